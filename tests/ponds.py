@@ -8,6 +8,9 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 
+from primordia.habitats.gymnasium.simulator import Environments, fields
+from primordia.habitats.gymnasium.spaces import Acting, Observation
+
 NUMBERS = count()
 """State of the module, which a reset does not restore."""
 CRASH = 5
@@ -234,6 +237,27 @@ for kind in KINDS:
     gymnasium.register(
         f"{kind.__name__}-v0", entry_point=f"tests.ponds:{kind.__name__}", max_episode_steps=50
     )
+
+
+def environments(
+    kind: str = "Pond", food: str = "", saving: str = "replay", **info: int
+) -> tuple[Environments, dict[str, np.ndarray]]:
+    """Return ponds in two cells of this process, and the arrays that they fill."""
+    shared = fields(Observation(Pond.observation_space), Acting(Pond.action_space), info)
+    arrays = {name: np.zeros((2, *shape), dtype) for name, (dtype, shape) in shared.items()}
+    made = Environments(arrays, f"tests.ponds:{kind}-v0", {}, [], saving, False, food, info)
+    for cell in range(2):
+        made.make(cell)
+    return made, arrays
+
+
+def lived(made: Any, arrays: dict[str, np.ndarray], word: int, ticks: int) -> None:
+    """Begin a life in the first cell with a word, and live some ticks."""
+    arrays["seed"][0] = word
+    made.reset(0)
+    for tick in range(ticks):
+        arrays["action"][0] = tick / 8
+        made.step([0])
 
 
 def noted_seeds(monkeypatch: Any) -> list[int]:

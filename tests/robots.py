@@ -7,6 +7,11 @@ import numpy as np
 from primordia.config import load
 from primordia.habitats.mujoco.habitat import MuJoCo
 
+SLIDE = """<mujoco><worldbody><body name="box"><joint name="x" type="slide" axis="1 0 0"/>
+<geom size="0.1"/></body></worldbody>{actuator}</mujoco>"""
+"""A model: a box that slides along a line."""
+MOTOR = '<actuator><motor joint="x"/></actuator>'
+
 
 def opened(bodies: int = 4, **changes: Any) -> MuJoCo:
     """Return an open habitat of half-cheetahs, with some settings changed."""

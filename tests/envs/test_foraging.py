@@ -100,7 +100,8 @@ def test_a_time_limit_around_the_environment_is_removed(rules: Any) -> None:
     assert rules(script).env is script
 
 
-def test_a_tick_that_the_environment_cuts_is_lived() -> None:
+def test_a_tick_in_which_the_environment_cuts_a_life_is_rewarded() -> None:
+    """The environment cuts each life at an age of 3."""
     env = Survival(Script(end=5), reward=2.0)
     env.reset()
     results = lived(env)
@@ -109,7 +110,7 @@ def test_a_tick_that_the_environment_cuts_is_lived() -> None:
 
 
 @pytest.mark.parametrize("rules", [Survival, Forager])
-def test_an_environment_that_is_made_from_its_spec_has_the_same_rules(rules: Any) -> None:
+def test_an_environment_that_is_made_from_a_spec_has_the_rules_of_the_spec(rules: Any) -> None:
     spec = rules(gymnasium.make("CartPole-v1"), reward=2.5).spec
     again = gymnasium.make(spec)
     again.reset(seed=1)

@@ -1,4 +1,4 @@
-"""Pictures of a life in an environment: the body after the tick, with the action that led to it."""
+"""Pictures of a life in an environment show the body after a tick, and the action of the tick."""
 
 from pathlib import Path
 from typing import Any
@@ -10,16 +10,14 @@ from PIL import Image
 pytest.importorskip("gymnasium")
 
 from primordia.envs import LifeEnv
-from primordia.envs.bodies import zeros
 from primordia.habitats.cartpole.picture import draw
-from primordia.habitats.contract import Action, Compound, Continuous, Discrete
 from tests.toys import Organ
 from tests.worlds import MILL, config
 
 TASK = "CartPole-survival"
 
 
-def test_a_picture_has_the_present_body_and_the_latest_action() -> None:
+def test_a_picture_shows_the_present_body_and_the_latest_action() -> None:
     env = LifeEnv(TASK, {"habitat": {"track_limit": 5.0}}, render_mode="rgb_array")
     for seed in (1, 2):
         pictures, actions = [(env.reset(seed=seed)[0], env.render())], [0, 1, 1]
@@ -48,23 +46,7 @@ def test_the_action_of_the_first_picture_has_the_habitats_form(tmp_path: Path) -
     assert picture.shape == (2, 3, 3)
 
 
-@pytest.mark.parametrize(
-    ("kind", "dtype", "shape"),
-    [
-        (Discrete(3), np.int32, (1,)),
-        (Continuous(3), np.float32, (1, 3)),
-        (Compound((Discrete(3), Continuous(2))), np.float32, (1, 3)),
-    ],
-)
-def test_an_action_of_zeros_has_the_form_of_any_action(
-    kind: Action, dtype: type, shape: tuple[int, ...]
-) -> None:
-    made = zeros(kind)
-    assert (made.dtype, made.shape) == (dtype, shape)
-    assert not made.any()
-
-
-def test_nothing_is_drawn_unless_it_is_asked_for_and_can_be() -> None:
+def test_nothing_is_drawn_without_a_render_mode_or_without_pictures_of_the_habitat() -> None:
     env = LifeEnv(TASK)
     env.reset(seed=1)
     assert env.render() is None

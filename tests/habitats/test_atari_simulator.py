@@ -67,9 +67,11 @@ def test_emulators_that_are_free_are_used_again(
     simulator._start.cache_clear()
 
 
-def arcade(cells: int = 2, **options: Any) -> tuple[Arcade, dict[str, np.ndarray]]:
-    """Return emulators in this process."""
-    arrays = {name: np.zeros((cells, *shape), dtype) for name, (dtype, shape) in FIELDS.items()}
+def arcade(
+    cells: int = 2, fields: dict[str, Any] = FIELDS, **options: Any
+) -> tuple[Arcade, dict[str, np.ndarray]]:
+    """Return emulators in this process, and the arrays that they fill."""
+    arrays = {name: np.zeros((cells, *shape), dtype) for name, (dtype, shape) in fields.items()}
     settings = {"game": "pong", "actions": [0, 2, 3], "mode": None, "difficulty": None,
                 "frame_skip": 1, "sticky": 0.0, "noops": 0} | options  # fmt: skip
     made = Arcade(arrays, **settings)
@@ -82,15 +84,14 @@ def arcade(cells: int = 2, **options: Any) -> tuple[Arcade, dict[str, np.ndarray
 def test_an_emulator_that_has_played_is_used_again_only_without_a_screen(
     watched: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A screen is no part of a state. The new emulators have a screen for each cell."""
+    """A restored state has no screen, so cells with a screen get new emulators."""
     kept: defaultdict[Any, list[Any]] = defaultdict(list)
     simulator._start(("pong", None, None))
     spare = console("pong")
     kept["pong", None, None].append(spare)
     monkeypatch.setattr(simulator, "_SPARE", kept)
     screen = {SCREEN: ("uint8", (210, 160, 3))} if watched else {}
-    monkeypatch.setattr(f"{__name__}.FIELDS", FIELDS | screen)
-    made, arrays = arcade()
+    made, arrays = arcade(fields=FIELDS | screen)
     used = [ale is spare for ale, _ in made._consoles.values()]
     assert used == [not watched, False]
     for cell in range(2):

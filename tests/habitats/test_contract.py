@@ -289,7 +289,9 @@ def test_a_compound_action_has_a_column_for_a_choice_and_several_for_numbers() -
         (Compound((Discrete(4), Continuous(3), Discrete(2))), (5,), jnp.float32),
     ],
 )
-def test_a_step_is_checked_with_actions_of_their_form(action: Any, shape: Any, dtype: Any) -> None:
+def test_the_check_steps_with_actions_of_the_declared_form(
+    action: Any, shape: Any, dtype: Any
+) -> None:
     given: list[Any] = []
 
     class Noting(Plain):

@@ -1,5 +1,6 @@
-"""How lives of an environment are compared: seeds, actions and records, and what follows from them."""
+"""Lives in which an environment is measured: their seeds, actions and records, and their comparison."""
 
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -9,11 +10,11 @@ pytest.importorskip("gymnasium")
 
 from gymnasium import spaces
 
+from primordia.habitats.gymnasium import check
 from primordia.habitats.gymnasium.check import (
     ENDED,
     GOING_ON,
     LIVES,
-    TICKS,
     Measured,
     _Life,
     _repeat,
@@ -23,37 +24,43 @@ from primordia.habitats.gymnasium.check import (
 from tests.ponds import Pond, noted_seeds
 
 
-def test_lives_that_do_not_end_share_the_ticks_and_have_seeds_of_their_own(
+def test_lives_that_do_not_end_share_the_ticks_and_each_has_its_own_seed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    monkeypatch.setattr(check, "TICKS", 10 * LIVES)
     seeds = noted_seeds(monkeypatch)
     found = measure("tests.ponds:Pond-v0", {"edge": 1e9}, ())
-    assert (found.lifespan, found.ended) == (TICKS / LIVES, 0)
+    assert (found.lifespan, found.ended) == (10, 0)
     assert seeds[:LIVES] == [1, 3, 5, 7, 9, 11, 13, 15]
-    assert set(seeds) == {0, *seeds[:LIVES]}  # a restored environment was reset with the seed 0
+    assert set(seeds) == {
+        0,
+        *seeds[:LIVES],
+    }  # environments are reset with 0 before they are restored
 
 
 def test_random_actions_cover_the_whole_space(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Numbers have the bounds -1 and 3; a choice is the largest of its own outputs."""
+    """Numbers are uniform, choices have equal shares, and all are independent of each other."""
     parts = [spaces.Box(-1, 3, (2,), np.float64), spaces.Discrete(3), spaces.Discrete(2)]
     monkeypatch.setattr(Pond, "action_space", spaces.Tuple(parts))
     trial = _Trial("tests.ponds:Pond-v0", {}, ())
     trial.first.action_space.seed(4)
-    rows = trial._random_rows(50)
-    trial.first.action_space.seed(4)
-    for row in rows:
-        drawn = trial.first.action_space.np_random.random(7)
-        expected = [*(4 * drawn[:2] - 1), np.argmax(drawn[2:5]), np.argmax(drawn[5:])]
-        np.testing.assert_allclose(row, expected)
+    rows = trial._random_rows(5000)
+    numbers, gear, side = rows[:, :2], rows[:, 2], rows[:, 3]
+    np.testing.assert_allclose(np.quantile(numbers, [0, 0.25, 0.5, 0.75, 1], axis=0).T,
+                               [[-1, 0, 1, 2, 3]] * 2, atol=0.1)  # fmt: skip
+    np.testing.assert_allclose([np.mean(gear == k) for k in range(3)], [1 / 3] * 3, atol=0.03)
+    np.testing.assert_allclose([np.mean(side == k) for k in range(2)], [1 / 2] * 2, atol=0.03)
+    np.testing.assert_allclose(np.corrcoef(rows.T), np.eye(4), atol=0.06)
 
 
-def test_a_record_has_observation_reward_and_end() -> None:
-    trial, seen = _Trial("tests.ponds:Pond-v0", {}, ()), np.array([3.0, 4.0])
-    numbers = np.array([3.0, 4.0, 0.5]).tobytes()
-    for terminated in (False, True):
-        for truncated in (False, True):
-            ends = ENDED if terminated or truncated else GOING_ON
-            assert trial._seen(seen, 0.5, terminated, truncated) == numbers + ends
+def test_records_differ_if_observation_reward_or_end_differ() -> None:
+    trial = _Trial("tests.ponds:Pond-v0", {}, ())
+    ends = [(False, False), (False, True), (True, False), (True, True)]
+    ticks = list(product(([3.0, 4.0], [3.0, 5.0], [6.0, 4.0]), (0.5, 0.25), ends))
+    records = [trial._seen(np.array(seen), reward, *end) for seen, reward, end in ticks]
+    assert len(set(records)) == 3 * 2 * 2
+    for record, (_, _, end) in zip(records, ticks, strict=True):
+        assert record.endswith(ENDED if any(end) else GOING_ON)
 
 
 @pytest.mark.parametrize(
@@ -67,7 +74,7 @@ def test_a_record_has_observation_reward_and_end() -> None:
         ([3.0, 4.0], 0.5, True, ["step changes the action that it is given"]),
     ],
 )
-def test_what_is_wrong_in_a_step_is_noted_once(
+def test_each_fault_of_a_step_is_noted_once(
     seen: list[float], reward: float, changed: bool, fault: list[str]
 ) -> None:
     trial = _Trial("tests.ponds:Pond-v0", {}, ())
@@ -97,12 +104,12 @@ LIVED = {0: [b"a", b"b"], 1: [b"c", b"d"]}
 def test_one_life_that_does_not_repeat_is_enough(
     change: dict[Any, Any], saving: str, fresh: bool, says: list[str]
 ) -> None:
-    """The lives are repeated in one used environment, and twice in new ones."""
+    """Each life is repeated three times: in a used environment, and twice in new environments."""
     trial: Any = object.__new__(_Trial)
-    made, times = iter(["used", *["new"] * 2, *["twice"] * 2]), dict[Any, Any]()
+    made, repeated = iter(["used", *["new"] * 2, *["twice"] * 2]), list[Any]()
 
     def live(env: str, life: _Life) -> list[bytes]:
-        times[env, life.seed] = True
+        repeated.append((env, life.seed))
         return change.get((env, life.seed), LIVED[life.seed])
 
     trial.new, trial.live = lambda: next(made), live
@@ -111,6 +118,6 @@ def test_one_life_that_does_not_repeat_is_enough(
     _repeat(trial, lives, found)
     assert (found.saving, found.fresh) == (saving, fresh)
     assert [fault[: len(text)] for fault, text in zip(found.faults, says, strict=True)] == says
-    assert len(times) == 6
-    if fresh:  # the lives in new environments are those with which others are compared
+    assert sorted(repeated) == [*product(("new", "twice", "used"), (0, 1))]
+    if fresh:  # later lives are compared with those in new environments
         assert [life.seen for life in lives] == [change.get(("new", k), LIVED[k]) for k in (0, 1)]

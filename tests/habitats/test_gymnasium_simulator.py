@@ -15,9 +15,9 @@ from primordia.errors import Trouble
 from primordia.habitats.gymnasium import environment
 from primordia.habitats.gymnasium.environment import line
 from primordia.habitats.gymnasium.habitat import Gymnasium
-from primordia.habitats.gymnasium.simulator import MESSAGE, Environments, fields
-from primordia.habitats.gymnasium.spaces import Acting, Observation
-from tests.ponds import Pond, noted_seeds
+from primordia.habitats.gymnasium.simulator import MESSAGE
+from tests import ponds
+from tests.ponds import Pond, environments, lived, noted_seeds
 
 
 def pond(**settings: Any) -> Gymnasium:
@@ -79,18 +79,6 @@ def test_a_life_ends_at_the_time_limit_or_when_the_environment_cuts_it(
     assert game._age.tolist() == [2, 3, 4, 5, 4]
 
 
-def environments(
-    kind: str = "Pond", food: str = "", saving: str = "replay", **info: int
-) -> tuple[Environments, dict[str, np.ndarray]]:
-    """Return ponds in two cells of this process, and the arrays that they fill."""
-    shared = fields(Observation(Pond.observation_space), Acting(Pond.action_space), info)
-    arrays = {name: np.zeros((2, *shape), dtype) for name, (dtype, shape) in shared.items()}
-    made = Environments(arrays, f"tests.ponds:{kind}-v0", {}, [], saving, False, food, info)
-    for cell in range(2):
-        made.make(cell)
-    return made, arrays
-
-
 def test_numbers_of_info_are_stored_side_by_side_and_a_missing_one_is_zero() -> None:
     made, arrays = environments(a=1, pair=2, b=1)
     made._tell(1, np.zeros(2), {"b": 4, "pair": np.array([2, 3]), "a": 1.5, "c": 9})
@@ -98,6 +86,27 @@ def test_numbers_of_info_are_stored_side_by_side_and_a_missing_one_is_zero() -> 
     made._tell(1, np.array([5.0, 6.0]), {"pair": [7, 8]})
     assert arrays["info"].tolist() == [[0, 0, 0, 0], [0, 7, 8, 0]]
     assert arrays["obs"].tolist() == [[0, 0], [5, 6]]
+
+
+def test_a_function_of_food_is_given_the_result_of_the_step(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    given: list[tuple[Any, ...]] = []
+    step = (np.array([5.0, 6.0]), 0.5, False, True, {"age": 1})
+
+    def food(*result: Any) -> float:
+        given.append(result)
+        return 2.5
+
+    monkeypatch.setattr(ponds, "food", food)
+    monkeypatch.setattr(Pond, "step", lambda *_: step)
+    made, arrays = environments(food="tests.ponds:food")
+    lived(made, arrays, 6, 1)
+    assert given == [step]
+    names = ("reward", "food", "terminated", "truncated")
+    assert [arrays[name][0].item() for name in names] == [0.5, 2.5, False, True]
+    made.reset(0)
+    assert [arrays[name][0].item() for name in names] == [0, 0, False, False]
 
 
 def test_the_seed_of_a_life_has_the_31_upper_bits_of_its_word(
@@ -113,8 +122,8 @@ def test_the_seed_of_a_life_has_the_31_upper_bits_of_its_word(
 
 
 @pytest.mark.parametrize("setting", ["food", "effort", "fatal"])
-def test_each_setting_may_name_info_alone(setting: str) -> None:
-    """The age is 1 after the first tick, and the registered limit of a game is 50 ticks."""
+def test_info_is_read_if_a_single_setting_names_it(setting: str) -> None:
+    """After the first tick, the age is 1. The environment's registered limit is 50 ticks."""
     game = pond(**{setting: 'info["age"] > 0' if setting == "fatal" else '3 * info["age"]'})
     game.open(2)
     game.reset(np.arange(2), np.array([[1], [2]], np.uint32))
@@ -177,7 +186,7 @@ def test_an_error_is_one_line_that_names_its_kind_unless_gymnasium_wrote_it() ->
     assert line(gymnasium.error.NameNotFound("")) == "NameNotFound"
 
 
-def test_modules_are_imported_in_the_order_of_the_settings_before_that_of_the_name(
+def test_modules_of_the_settings_are_imported_in_order_before_that_of_the_name(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     loaded: list[str] = []
@@ -185,6 +194,9 @@ def test_modules_are_imported_in_the_order_of_the_settings_before_that_of_the_na
     for name in ("tests.ponds:Pond-v0", "CartPole-v1"):
         environment.make(name, {}, ("b", "a")).close()
     assert loaded == ["b", "a", "tests.ponds", "b", "a"]
+
+
+def test_an_environment_is_made_with_its_options_and_draws_if_it_is_watched() -> None:
     pond = environment.make("tests.ponds:Pond-v0", {"edge": 2.5}, (), watched=True).unwrapped
     assert isinstance(pond, Pond)
     assert (pond.edge, pond.render_mode) == (2.5, "rgb_array")

@@ -169,7 +169,7 @@ def test_a_box_is_described_by_its_least_and_largest_number() -> None:
         (spaces.Tuple([spaces.Box(-1, 1, (2,), np.float32), spaces.Discrete(3)]), "float64"),
     ],
 )
-def test_a_row_has_float32_if_these_hold_all_values(space: Any, dtype: str) -> None:
+def test_a_row_is_float32_if_float32_holds_all_values(space: Any, dtype: str) -> None:
     assert Observation(space).dtype == dtype
 
 

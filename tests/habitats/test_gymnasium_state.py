@@ -40,6 +40,7 @@ class Thing:
         self.old = np.random.RandomState(seed)
         self.part = Part(seed)
         self.parts = [self.part, Part(-seed), self.part]
+        self.arrays = [np.arange(2.0) + place for place in range(seed)]
         self.itself = self
         self.colour, self.kind = Colour.RED, Part
 
@@ -54,6 +55,7 @@ class Thing:
             "array": (self.array.dtype, self.array.shape, self.array.tolist()),
             "whole": (self.whole.dtype, self.whole.shape),
             "parts": [part.number for part in self.parts],
+            "arrays": [each.tolist() for each in self.arrays],
         }
 
 
@@ -61,20 +63,17 @@ class Thing:
 def test_every_kind_of_value_is_restored(saved: int, present: int) -> None:
     """Two names of one object still name one object. An attribute that was added later is removed.
 
-    The lists that are restored are longer or shorter than the present ones.
+    Saved lists are longer or shorter than the present ones.
     """
     one, other = Thing(saved), Thing(present)
-    one.plain += [np.arange(2), saved] * (saved // 7)
     other.later = 9  # type: ignore[attr-defined]
-    del other.tuple, other.small  # so that they are the last attributes when they are restored
+    del other.tuple, other.small  # these are then the last attributes of the restored environment
     own = other.part, other.generator
     one.generator.random(5)
     one.old.random_sample(5)
-    one.old.normal()  # the next normal number is known from here on
+    one.old.normal()  # it draws two numbers and keeps one
     state.decode(other, state.encode(one))
     assert state.encode(other) == state.encode(one)
-    assert list(map(str, other.plain)) == list(map(str, one.plain))
-    one.plain, other.plain = one.plain[:5], other.plain[:5]
     assert other.values() == one.values()
     assert other.generator.random(3).tolist() == one.generator.random(3).tolist()
     assert other.old.normal(size=3).tolist() == one.old.normal(size=3).tolist()
@@ -108,7 +107,7 @@ class ReducedByProtocol(Part):
 
 @pytest.mark.parametrize("part", [Random(1), Counter("aab"), Reduced(1), ReducedByProtocol(1)])
 def test_an_object_with_a_state_beside_its_attributes_is_not_saved(part: Any) -> None:
-    """Such an object says how it is pickled. A generator of Python has numbers that are no attributes."""
+    """Such an object defines how it is pickled. The numbers of Python's generator are no attributes."""
     thing = Thing(3)
     thing.parts[1] = part
     says = rf"^env\.parts\[1\] is a {type(part).__name__}, which cannot be saved$"

@@ -40,7 +40,7 @@ def test_each_life_of_random_play_has_another_seed(monkeypatch: pytest.MonkeyPat
 def test_random_play_has_the_options_and_notes_the_info_of_every_tick(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The fish does not reach an edge so far away. The environment cuts each life at an age of 40."""
+    """The edge is out of the fish's reach. The environment cuts each life at an age of 40."""
     reset, step = Pond.reset, Pond.step
 
     def begin(self: Pond, **given: Any) -> Any:
@@ -65,7 +65,7 @@ def test_an_error_ends_a_life_of_random_play() -> None:
     seen = probe.random_play("tests.ponds:Crashing-v0", {}, ())
     ages = [info["age"] for _, info in seen]
     assert all(age in (0, before + 1) for before, age in pairwise(ages))
-    assert len(seen) < probe.TICKS + ages.count(0)  # a step with an error leaves nothing
+    assert len(seen) < probe.TICKS + ages.count(0)  # a step with an error is not noted
 
 
 def test_a_picture_is_tried_with_the_options_of_the_environment(

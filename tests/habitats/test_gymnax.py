@@ -62,7 +62,7 @@ def test_the_environments_time_limit_ends_a_life_only_if_it_is_kept() -> None:
 
 
 def test_without_a_condition_no_life_ends(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The test gives the values of a tick, in which two of four walks are done."""
+    """The test gives the values of a tick: two of four walks are done."""
     done = [True, False, False, True]
     values = {"done": jnp.array(done)}
     monkeypatch.setattr(Gymnax, "tick", lambda self, bodies, action: (bodies, values))

@@ -133,7 +133,7 @@ def test_a_limit_that_is_a_parameter_is_off_unless_it_is_given_or_kept(
 
 
 class Changing(Cut):
-    """An environment with a state of two parts; the test gives that of birth, and the later one."""
+    """An environment whose state has two parts. The test gives the state at birth and the later one."""
 
     def __init__(self, born: Any, later: Any) -> None:
         self.born, self.later = born, later
@@ -164,7 +164,7 @@ def test_a_number_has_a_type_that_holds_its_values_at_birth_and_later() -> None:
 
 
 @pytest.mark.parametrize("drifts", [False, True])
-def test_functions_repeat_if_they_have_the_same_arrays_when_they_are_traced_again(
+def test_an_environment_repeats_if_its_functions_have_the_same_arrays_in_each_trace(
     drifts: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The test keeps JAX's caches, to save time."""

@@ -8,6 +8,7 @@ import pytest
 
 import primordia
 from primordia.config import load
+from primordia.habitats.contract import Outcome
 from tests.robots import born, of_task, opened
 
 mujoco = pytest.importorskip("mujoco")
@@ -255,19 +256,18 @@ def test_an_amount_that_nothing_else_observes_is_that_of_the_end_of_the_tick(amo
 
 def test_effort_and_death_may_each_observe_what_nothing_else_does() -> None:
     """The speeds at birth are up to 1 m/s, and a tick has 0.05 s."""
-    habitat = opened(effort="travelled", velocity_noise=1.0)
-    born(habitat)
-    _, outcome = habitat.step(np.zeros((4, 6), np.float32), FOUR)
-    effort = np.asarray(outcome.effort)
+
+    def stepped(**settings: Any) -> tuple[np.ndarray, Outcome]:
+        habitat = opened(**settings, velocity_noise=1.0)
+        born(habitat)
+        return habitat.step(np.zeros((4, 6), np.float32), FOUR)
+
+    effort = np.asarray(stepped(effort="travelled")[1].effort)
     assert ((effort > 0) & (effort < 0.1)).all()
-    habitat = opened(fatal="com_forward * height > 0", velocity_noise=1.0)
-    born(habitat)
-    _, outcome = habitat.step(np.zeros((4, 6), np.float32), FOUR)
-    other = opened(senses=("com_forward",), velocity_noise=1.0)
-    born(other)
-    senses, _ = other.step(np.zeros((4, 6), np.float32), FOUR)
-    assert outcome.fatal.tolist() == (senses[:, 0] > 0).tolist()
-    assert len(set(outcome.fatal.tolist())) == 2
+    fatal = stepped(fatal="com_forward * height > 0")[1].fatal.tolist()
+    senses, _ = stepped(senses=("com_forward",))
+    assert fatal == (senses[:, 0] > 0).tolist()
+    assert set(fatal) == {False, True}
 
 
 def test_controls_are_clipped_to_their_ranges() -> None:

@@ -11,15 +11,10 @@ import primordia
 from primordia.habitats.mujoco import simulator as mujoco_model
 from tests import commands
 from tests.commands import complains, here
-from tests.robots import born, opened
+from tests.robots import MOTOR, SLIDE, born, opened
 
 mujoco = pytest.importorskip("mujoco")
 
-SLIDE = """<mujoco><worldbody><body name="box"><joint name="x" type="slide" axis="1 0 0"/>
-<geom size="0.1"/></body></worldbody>{actuator}</mujoco>"""
-
-
-MOTOR = '<actuator><motor joint="x"/></actuator>'
 BOX = """
 task = "box"
 cells = 4

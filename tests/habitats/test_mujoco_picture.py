@@ -1,4 +1,4 @@
-"""The camera of pictures of robots."""
+"""The camera that takes pictures of a robot: the model's own, or one that fits the robot."""
 
 from pathlib import Path
 from typing import Any
@@ -7,20 +7,20 @@ import pytest
 
 from primordia.habitats.mujoco.picture import Renderer
 from primordia.habitats.mujoco.simulator import load_model
-from tests.habitats.test_mujoco_models import MOTOR, SLIDE
+from tests.robots import MOTOR, SLIDE
 
 mujoco = pytest.importorskip("mujoco")
 
 
 def camera(file: str) -> tuple[Any, Any]:
-    """Return the camera for a model, and the default camera. Nothing is drawn."""
+    """Return the camera for a model, and MuJoCo's default camera. Nothing is drawn."""
     renderer, default = object.__new__(Renderer), mujoco.MjvCamera()
     renderer._mujoco, renderer._model = mujoco, load_model(file, None)
     mujoco.mjv_defaultFreeCamera(renderer._model, default)
     return renderer._make_camera(), default
 
 
-def test_a_camera_that_follows_the_robot_is_that_of_the_model() -> None:
+def test_a_camera_of_the_model_that_follows_the_robot_is_used() -> None:
     used, _ = camera("gymnasium:half_cheetah.xml")
     assert (used.type, used.fixedcamid) == (mujoco.mjtCamera.mjCAMERA_FIXED, 0)
 

@@ -110,8 +110,8 @@ def test_a_reached_target_feeds_once_and_then_moves() -> None:
     assert np.median(radius) == pytest.approx(0.2 / np.sqrt(2), rel=0.15)
 
 
-def test_only_targets_that_the_living_reach_at_the_end_of_a_tick_move() -> None:
-    """Nothing but the target needs the places of bodies. A target that moves is at rest."""
+def test_a_target_moves_only_if_a_living_body_reaches_it_at_the_end_of_a_tick() -> None:
+    """Only the target needs the places of bodies. A target that has moved is at rest."""
     target = {**TARGET, "within": 0.2}
     own: dict[str, Any] = {"file": "gymnasium:reacher.xml", "senses": ("qpos",)}
     habitat = opened(60, **own, target=target, position_noise=2.0, velocity_noise=40.0, substeps=1)

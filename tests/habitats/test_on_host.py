@@ -113,7 +113,7 @@ def test_it_is_drawn_as_the_jax_habitat_is() -> None:
 
 
 class Crowded(Meadow):
-    """Bodies of twelve arrays: the array of number n holds n more than the first one."""
+    """Bodies of twelve arrays. The values of array n are those of array 0 plus n."""
 
     def reset(self, words: Any) -> Any:
         return [super(Crowded, self).reset(words) + np.float32(n) for n in range(12)]
@@ -137,8 +137,11 @@ def test_more_than_ten_arrays_of_a_body_are_restored_in_their_order() -> None:
     assert [float(body[0, 0] - other.seen()[0][0, 0]) for body in other.seen()] == [*range(12)]
 
 
-def test_pictures_and_captions_are_those_of_the_jax_habitat() -> None:
+def test_a_caption_is_that_of_the_jax_habitat() -> None:
     assert OnHost(Crowded()).caption([0] * 12, np.int32(1)) == "12 arrays"
+
+
+def test_it_can_be_drawn_only_if_the_jax_habitat_can() -> None:
     for inner, drawn in ((CartPole(), True), (Crowded(), False)):
         assert OnHost(inner).can(Ability.PICTURE) == drawn
         assert OnHost(inner).can(Ability.SAVE)

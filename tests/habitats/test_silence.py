@@ -24,8 +24,8 @@ print("warned after", file=sys.stderr)
 """
 
 
-def test_only_output_around_a_silence_is_seen() -> None:
-    """Lines that were printed before, but not yet written, are written."""
+def test_output_is_dropped_only_during_a_silence() -> None:
+    """A line that was printed before the silence is written, even if it was still in the buffer."""
     command = [sys.executable, "-c", SPEAKING]
     buffered = {**environment(), "PYTHONUNBUFFERED": ""}
     done = subprocess.run(command, env=buffered, capture_output=True, text=True, check=True)

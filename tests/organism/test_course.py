@@ -1,4 +1,4 @@
-"""The compared values of a life: those of its record or state, and those found when it is lived again."""
+"""The compared values of a life: as recorded, and as found when the life is lived again."""
 
 import hashlib
 from types import SimpleNamespace
@@ -13,11 +13,11 @@ from primordia.organism.reliving.course import Course, recorded
 from primordia.organism.reliving.instant import Stretch
 
 PLACE = 6
-"""The place of cell 2 of world 1 in arrays of worlds of 4 cells."""
+"""The index of cell 2 of world 1 in arrays of a state. Each world has 4 cells."""
 
 
 def state(cells: int) -> dict[str, np.ndarray]:
-    """Return arrays in which no two numbers are equal."""
+    """Return the arrays of a state. No two numbers are equal."""
     whole = np.arange(cells)
     return {
         "world.organisms.energy": (ONE * whole).astype(np.int32),
@@ -35,7 +35,10 @@ def digest(*arrays: np.ndarray) -> str:
 
 
 def life(kind: str = "host", cause: Cause | None = None, **other: Any) -> Any:
-    """Return the life of the organism in cell 2 of world 1 from tick 40 to 90; if dead, it left 1.5."""
+    """Return the life of the organism in cell 2 of world 1, from tick 40 to tick 90.
+
+    If the organism is dead, its record has an energy of 1.5 and a food of 8.
+    """
     names = ("score", "lives") if kind == "host" else ()
     lives = SimpleNamespace(world=np.array([1]), cell=np.array([2]), born=np.array([90]))
     run = SimpleNamespace(schema=SimpleNamespace(tallies=names), state=state(8), lives=lives)
@@ -51,15 +54,14 @@ def life(kind: str = "host", cause: Cause | None = None, **other: Any) -> Any:
 
 def test_the_dead_are_compared_with_the_row_of_their_death() -> None:
     vitals = {"energy": 1.5, "food": 8.0}
-    told = recorded(life(cause=Cause.STARVED))
-    assert told == {"tick": 90, "cause": "starved", **vitals, "score": 5, "lives": 0}
-    told = recorded(life("jax", Cause.HAZARD))
-    assert told == {"tick": 90, "cause": "hazard", **vitals}
+    starved, struck = recorded(life(cause=Cause.STARVED)), recorded(life("jax", Cause.HAZARD))
+    assert starved == {"tick": 90, "cause": "starved", **vitals, "score": 5, "lives": 0}
+    assert struck == {"tick": 90, "cause": "hazard", **vitals}
 
 
 @pytest.mark.parametrize("begins", [40, 90])
-def test_the_living_are_compared_with_their_own_place_in_the_newest_state(begins: int) -> None:
-    """Counts of an organism that has not lived a tick yet are those of the body before it."""
+def test_the_living_are_compared_with_the_newest_state_of_their_cell(begins: int) -> None:
+    """Before an organism's first tick, the counts of its cell are those of an earlier organism."""
     arrays = state(8)
     memory = digest(arrays["world.organisms.memory"][PLACE])
     own = {"tick": 90, "cause": "alive", "energy": 6.0, "food": 106.0, "memory": memory}
@@ -71,7 +73,7 @@ def test_the_living_are_compared_with_their_own_place_in_the_newest_state(begins
 
 
 def stretch(last: int, ticks: int, cause: int = -1) -> Stretch:
-    """Return some ticks, the last of which is `last`; no two numbers are equal."""
+    """Return the ticks of a life up to tick `last`, in which it may end. No two numbers are equal."""
     tick = np.arange(last - ticks + 1, last + 1)
     none: Any = None
     ends = np.full(ticks, -1, np.int32)
@@ -81,13 +83,13 @@ def stretch(last: int, ticks: int, cause: int = -1) -> Stretch:
 
 
 def held(cells: int) -> dict[str, np.ndarray]:
-    """Return the state of one organism."""
+    """Return the part of a state that belongs to the last of its organisms."""
     wanted = ("memory", "energy", "eaten", "senses")
     return {name: each[-1:] for name, each in state(cells).items() if name.endswith(wanted)}
 
 
 def found(lived: Any, *stretches: Stretch) -> dict[str, Any]:
-    """Live a life of these stretches; return the values found."""
+    """Live a life that has these stretches, and return the values found."""
     steps: list[Any] = [(held(3), None), *((held(4 + n), s) for n, s in enumerate(stretches))]
     lived.instants = lambda: iter(steps)
     course = Course(lived)
@@ -95,7 +97,7 @@ def found(lived: Any, *stretches: Stretch) -> dict[str, Any]:
     return course.found()
 
 
-def test_the_living_are_found_as_they_are_at_the_end_of_the_last_stretch() -> None:
+def test_the_values_of_the_living_are_those_at_the_end_of_the_last_stretch() -> None:
     last = held(5)
     senses, memory = last["bodies.senses"], last["world.organisms.memory"]
     digests = {"memory": digest(memory), "senses": digest(senses)}
@@ -112,19 +114,19 @@ def test_the_living_are_found_as_they_are_at_the_end_of_the_last_stretch() -> No
 
 
 @pytest.mark.parametrize("cause", [each for each in Cause if each is not Cause.REPLACED])
-@pytest.mark.parametrize("told", [Cause.STARVED, Cause.REPLACED, None])
-def test_a_life_that_ends_by_itself_has_that_cause_whatever_is_recorded(
-    cause: Cause, told: Cause | None
+@pytest.mark.parametrize("on_record", [Cause.STARVED, Cause.REPLACED, None])
+def test_a_death_in_the_relived_life_has_its_own_cause_whatever_the_record_says(
+    cause: Cause, on_record: Cause | None
 ) -> None:
     """Memory and body have no meaning after a death."""
     values = {"energy": 85.0, "food": 185.0, "score": 1085, "lives": 2085}
     end = stretch(85, 15, int(cause))
-    assert found(life(cause=told), stretch(70, 30), end) == {
+    assert found(life(cause=on_record), stretch(70, 30), end) == {
         "cause": cause.label, "tick": 85, **values,
     }  # fmt: skip
 
 
-def test_a_life_up_to_the_birth_of_a_child_in_its_cell_is_replaced() -> None:
+def test_a_life_is_replaced_if_a_child_is_born_in_its_cell_at_its_end() -> None:
     values = {"energy": 90.0, "food": 190.0, "score": 1090, "lives": 2090}
     lived = life(cause=Cause.REPLACED)
     assert found(lived, stretch(90, 50)) == {"cause": "replaced", "tick": 90, **values}
@@ -134,10 +136,11 @@ def test_a_life_up_to_the_birth_of_a_child_in_its_cell_is_replaced() -> None:
         assert found(lived, stretch(90, 50))["cause"] == "alive"
 
 
-@pytest.mark.parametrize("cause", [-1, int(Cause.FATAL), int(Cause.STARVED)])
-def test_an_organism_that_dies_by_itself_in_the_last_tick_is_not_replaced(cause: int) -> None:
+@pytest.mark.parametrize("cause", [None, Cause.FATAL, Cause.STARVED])
+def test_an_organism_with_its_own_cause_of_death_is_not_replaced(cause: Cause | None) -> None:
     lived = life(cause=Cause.REPLACED)
-    lived.instants = lambda: iter([(held(3), None), (held(4), stretch(90, 50, cause))])
+    end = stretch(90, 50, -1 if cause is None else int(cause))
+    lived.instants = lambda: iter([(held(3), None), (held(4), end)])
     course = Course(lived)
     assert len(list(course.stretches())) == 1
-    assert course.replaced == (cause < 0)
+    assert course.replaced == (cause is None)

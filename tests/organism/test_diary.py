@@ -69,7 +69,7 @@ def test_a_file_holds_every_tick_of_every_stretch(
 
 @pytest.mark.parametrize("suffix", diary.WRITERS)
 def test_a_vector_of_one_number_is_numbered_too(suffix: str, tmp_path: Path) -> None:
-    """So the names do not depend on the number of senses or actions."""
+    """Thus the names of columns do not depend on the number of senses or actions."""
     whole = lived(21, 3)
     narrow = whole._replace(senses=whole.senses[:, :1], action=whole.action[:, :1])
     diary.write(tmp_path / f"life{suffix}", iter([narrow]), COUNTS)

@@ -8,11 +8,14 @@ import numpy as np
 import pytest
 
 from primordia.errors import InputError
+from primordia.habitats.contract import Continuous, Discrete
 from primordia.organism import evaluation
 from primordia.organism.evaluation import Evaluation, Spread, changed, judged
 from primordia.organism.games import Games, Players, _marks
 from primordia.organism.playing.seats import Stretch
-from tests.worlds import config
+from primordia.settings.base import Settings
+from tests.toys import Meadow
+from tests.worlds import MEADOW, config
 
 NUMBERS = [(9, 1), (4, 0)]
 
@@ -191,7 +194,7 @@ def test_games_differ_in_course_if_senses_or_food_of_a_tick_differ() -> None:
 
 
 def test_settings_are_given_in_a_table_or_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A name may be that of an argument, so there is a table too; what is named alone wins."""
+    """A table may have names that are arguments too, such as `senses`. A keyword outweighs the table."""
     asked: list[Any] = []
     monkeypatch.setattr(evaluation, "players_of", lambda run, organisms: f"players {organisms}")
     monkeypatch.setattr(evaluation, "judged", lambda *given, **named: asked.append((given, named)))
@@ -210,45 +213,31 @@ def test_settings_are_given_in_a_table_or_by_name(monkeypatch: pytest.MonkeyPatc
     assert len(asked) == 2
 
 
-def bodied(senses: int = 4, actions: int = 2) -> Any:
-    return SimpleNamespace(senses_size=senses, action=SimpleNamespace(size=actions))
+class Walls(Settings):
+    height: int = 1
+    length: int = 5
 
 
-def settled(monkeypatch: pytest.MonkeyPatch, known: list[str], after: Any) -> Any:
-    """Return settings of a habitat with these names; once they are changed, it is another habitat."""
-    monkeypatch.setattr(evaluation, "setting_fields", lambda kind: dict.fromkeys(known))
-    before = bodied()
-    if after.action.size == before.action.size:
-        after.action = before.action
+class Walled(Meadow):
+    """A habitat with a group of settings."""
 
-    def copy(update: Any) -> Any:
-        return SimpleNamespace(build_habitat=lambda: after, update=update)
-
-    values = {"walls": {"height": 1, "length": 5}}
-    return SimpleNamespace(habitat=values, build_habitat=lambda: before, model_copy=copy)
+    walls: Walls = Walls()
+    speed: float | None = 2.0
 
 
-def test_a_setting_in_a_group_is_changed_by_the_name_of_the_group(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """A habitat without declared settings may have any."""
-    for known in (["walls.height", "walls.length", "speed"], []):
-        before = settled(monkeypatch, known, bodied())
-        found: Any = changed(before, {"walls": {"height": 0}, "speed": "none"})
-        assert found.update == {"habitat": {"walls": {"height": 0, "length": 5}, "speed": None}}
-    before = settled(monkeypatch, ["walls.height", "speed"], bodied())
+def test_a_setting_in_a_group_is_changed_by_the_name_of_the_group() -> None:
+    before = config(MEADOW, habitat={"name": f"{__name__}:Walled", "walls": {"length": 7}})
+    after: Any = changed(before, {"walls": {"height": 0}, "speed": "none"}).build_habitat()
+    assert (after.walls, after.speed) == (Walls(height=0, length=7), None)
     with pytest.raises(InputError, match="habitat has no setting 'height'"):
-        changed(before, {"speed": 1, "height": 0})
+        changed(before, {"speed": 1.0, "height": 0})
 
 
-@pytest.mark.parametrize(("senses", "actions"), [(5, 2), (4, 3), (3, 1)])
-def test_a_habitat_of_other_senses_or_actions_is_refused(
-    senses: int, actions: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    before = settled(monkeypatch, [], bodied(senses, actions))
-    says = f"{senses} senses and {actions} actions; the brain is made for 4 senses and 2 actions$"
-    with pytest.raises(InputError, match=says):
-        changed(before, {"speed": 1})
+def test_a_habitat_without_declared_settings_may_have_any() -> None:
+    """This habitat is no model of settings; its options are those of the habitat inside."""
+    before = config(MEADOW, habitat={"name": "tests.toys:Mirror", "inner": "meadow"})
+    after: Any = changed(before, {"lifespan": 9}).build_habitat()
+    assert after.inner.lifespan == 9
 
 
 def test_only_the_settings_that_are_named_change() -> None:
@@ -265,10 +254,18 @@ def test_a_setting_of_none_is_unset() -> None:
     assert (after.mode, after.difficulty) == (None, 2)
 
 
-def test_settings_that_change_the_number_of_senses_are_refused() -> None:
-    says = (
-        r"\(angle_limit, senses\) give the habitat 1 senses and 2 actions; "
-        "the brain is made for 4 senses and 2 actions$"
-    )
+@pytest.mark.parametrize(
+    ("changes", "has"),
+    [
+        ({"lifespan": 9, "senses_size": 1}, r"\(lifespan, senses_size\) .* 1 senses and 2 actions"),
+        ({"senses_size": 3}, r"\(senses_size\) give the habitat 3 senses and 2 actions"),
+        ({"action": Discrete(3)}, r"\(action\) give the habitat 2 senses and 3 actions"),
+        ({"action": Continuous(2)}, r"\(action\) give the habitat 2 senses and 2 actions"),
+    ],
+)
+def test_settings_that_change_the_senses_or_the_actions_are_refused(
+    changes: dict[str, Any], has: str
+) -> None:
+    says = f"{has}; the brain is made for 2 senses and 2 actions$"
     with pytest.raises(InputError, match=says):
-        changed(config("CartPole-survival"), {"angle_limit": 30.0, "senses": ["x"]})
+        changed(config(MEADOW), changes)

@@ -44,42 +44,44 @@ def test_an_organism_has_the_values_of_its_row() -> None:
 
 
 @pytest.fixture
-def third() -> Organism:
-    """Return organism 12 of world 2, in row 1."""
+def twelfth() -> Organism:
+    """Return organism 12 of world 2, which has row 1 in the records."""
     lives = SimpleNamespace(id=np.array([5, 12]), world=np.array([0, 2]))
     run: Any = SimpleNamespace(lives=lives, law="a law")
     return Organism(run, 1)
 
 
-def test_what_is_derived_is_of_this_organism_in_its_world(third: Organism) -> None:
+def test_ancestors_genome_policy_and_games_are_those_of_the_organism(twelfth: Organism) -> None:
     with (
         patch.object(organism, "descent", return_value=np.array([0, 1])) as descent,
         patch.object(organism, "rebuild", return_value="a genome") as rebuild,
         patch.object(organism, "Policy") as policy,
         patch.object(organism, "evaluate", return_value=["an evaluation"]) as evaluate,
     ):
-        assert third.descent() == [5, 12]
-        assert third.genome() == "a genome"
-        assert third.policy() is policy.return_value
-        assert third.evaluate(games=3, sticky=0.5) == "an evaluation"
-    descent.assert_called_once_with(third.lives, 12, 2)
-    assert rebuild.call_args_list == [call(third.run, 12, 2)] * 2
+        assert twelfth.descent() == [5, 12]
+        assert twelfth.genome() == "a genome"
+        assert twelfth.policy() is policy.return_value
+        assert twelfth.evaluate(games=3, sticky=0.5) == "an evaluation"
+    descent.assert_called_once_with(twelfth.lives, 12, 2)
+    assert rebuild.call_args_list == [call(twelfth.run, 12, 2)] * 2
     policy.assert_called_once_with("a law", "a genome")
-    evaluate.assert_called_once_with(third.run, [(12, 2)], games=3, sticky=0.5)
+    evaluate.assert_called_once_with(twelfth.run, [(12, 2)], games=3, sticky=0.5)
 
 
-def test_videos_and_revivals_are_of_this_organism_with_the_given_options(third: Organism) -> None:
-    """Paths may be texts."""
+def test_videos_and_revivals_are_those_of_the_organism_with_the_given_options(
+    twelfth: Organism,
+) -> None:
+    """A path may be given as a text."""
     with patch.object(organism, "replay") as replay, patch.object(organism, "revive") as revive:
-        third.replay("a.gif", (0, 9), (3, 4))
-        third.replay()
-        third.revive(0, "a.npz", Path("b.gif"))
-        third.revive()
+        twelfth.replay("a.gif", (0, 9), (3, 4))
+        twelfth.replay()
+        twelfth.revive(0, "a.npz", Path("b.gif"))
+        twelfth.revive()
     assert replay.call_args_list == [
-        call(third.run, 12, 2, Path("a.gif"), (0, 9), beside=(3, 4)),
-        call(third.run, 12, 2, None, (None, None), beside=()),
+        call(twelfth.run, 12, 2, Path("a.gif"), (0, 9), beside=(3, 4)),
+        call(twelfth.run, 12, 2, None, (None, None), beside=()),
     ]
     assert revive.call_args_list == [
-        call(third.run, 12, 2, since=0, save=Path("a.npz"), film=Path("b.gif")),
-        call(third.run, 12, 2, since=None, save=None, film=None),
+        call(twelfth.run, 12, 2, since=0, save=Path("a.npz"), film=Path("b.gif")),
+        call(twelfth.run, 12, 2, since=None, save=None, film=None),
     ]

@@ -7,21 +7,25 @@ import numpy as np
 import pytest
 
 from primordia.errors import InputError
+from primordia.law.law import Law
 from primordia.organism import onnx
 from primordia.organism.policy import Policy
-from tests.worlds import MILL, config
+from tests.worlds import MILL, law_of
 
 
 @pytest.fixture(scope="module")
-def policy() -> Policy:
-    """Return a brain with 2 neurons, whose k-th weight is k."""
-    settings = config({**MILL, "brain": {"hidden": 2}})
-    law = settings.build_law(settings.build_habitat())
+def law() -> Law:
+    return law_of(MILL, brain={"hidden": 2})
+
+
+@pytest.fixture
+def policy(law: Law) -> Policy:
+    """Return a brain with 2 neurons. The weights are 0, 1, 2, ... in the order of the genome."""
     return Policy(law, np.arange(law.heredity.layout.length, dtype=np.float32))
 
 
-def test_weights_are_blocks_in_the_order_of_the_genome(policy: Policy) -> None:
-    blocks, first = policy._law.heredity.layout.blocks, 0
+def test_weights_are_blocks_in_the_order_of_the_genome(law: Law, policy: Policy) -> None:
+    blocks, first = law.heredity.layout.blocks, 0
     assert list(policy.weights) == [name for name, _ in blocks]
     for name, shape in blocks:
         size = int(np.prod(shape))
@@ -32,17 +36,15 @@ def test_weights_are_blocks_in_the_order_of_the_genome(policy: Policy) -> None:
 
 
 @pytest.mark.parametrize("more", [-1, 1, 5])
-def test_neither_fewer_nor_more_senses_are_accepted(more: int, policy: Policy) -> None:
-    right = policy._law.senses
-    says = f"^{right + more} senses are given; the brain has {right}$"
+def test_neither_fewer_nor_more_senses_are_accepted(more: int, law: Law, policy: Policy) -> None:
+    says = f"^{law.senses + more} senses are given; the brain has {law.senses}$"
     with pytest.raises(InputError, match=says):
-        policy(np.zeros(right + more, np.float32))
+        policy(np.zeros(law.senses + more, np.float32))
 
 
-def test_a_policy_remembers_until_it_is_reset(policy: Policy) -> None:
-    """A second call with the same senses begins with what the first one left."""
-    senses = np.full(policy._law.senses, 0.25, np.float32)
-    policy.reset()
+def test_a_policy_remembers_until_it_is_reset(law: Law, policy: Policy) -> None:
+    """The second of two calls with the same senses begins with the memory that the first one left."""
+    senses = np.full(law.senses, 0.25, np.float32)
     assert policy.memory.tolist() == [0.0, 0.0]
     policy(senses)
     first = policy.memory
@@ -54,16 +56,16 @@ def test_a_policy_remembers_until_it_is_reset(policy: Policy) -> None:
     np.testing.assert_array_equal(policy.memory, first)
 
 
-def test_a_model_is_written_with_the_weights_and_what_is_told_about_them(policy: Policy) -> None:
+def test_a_model_is_written_with_the_weights_and_the_metadata(law: Law, policy: Policy) -> None:
     with patch.object(onnx, "write") as write:
         policy.to_onnx("a.onnx", {"seed": "3"})
         policy.to_onnx(Path("b.onnx"))
     for given, expected in zip(
         write.call_args_list, ((Path("a.onnx"), {"seed": "3"}), (Path("b.onnx"), {})), strict=True
     ):
-        path, law, weights, about = given.args
+        path, of, weights, about = given.args
         assert (path, about) == expected
-        assert law is policy._law
+        assert of is law
         assert {name: block.tolist() for name, block in weights.items()} == {
             name: block.tolist() for name, block in policy.weights.items()
         }

@@ -98,10 +98,10 @@ def test_a_life_without_a_tick_cannot_be_shown(
 
 
 @pytest.mark.parametrize("out", [None, Path("new.gif")])
-def test_a_video_is_of_the_lives_that_are_named_in_their_world(
+def test_a_video_shows_the_named_lives_of_one_world(
     out: Path | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Lives are in the order of birth, each once. Only without a name does the file lie in the run."""
+    """Lives are in the order of birth, each once. A file without a given name is in the run's folder."""
     made: list[Any] = []
 
     def of(run: Any, organism: int, world: int = 0) -> tuple[int, int]:
@@ -133,7 +133,7 @@ def test_a_video_is_of_the_lives_that_are_named_in_their_world(
         (diary.check_name, (".npz", ".parquet", ".csv"), (".NPZ", ".Csv", ".gif", "")),
     ],
 )
-def test_only_a_suffix_that_is_written_is_accepted(
+def test_a_file_must_have_the_suffix_of_a_known_kind(
     check: Any, good: tuple[str, ...], bad: tuple[str, ...]
 ) -> None:
     for suffix in good:

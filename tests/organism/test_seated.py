@@ -1,4 +1,4 @@
-"""Games played side by side: who sits where, in which parts they play, and what a game adds up to."""
+"""Games played side by side: the seats of players, the parts of a play, and the sums of a game."""
 
 from types import SimpleNamespace
 from typing import Any
@@ -14,7 +14,7 @@ from primordia.random.wide import wide
 
 
 def players(count: int, kind: str = "host") -> Players:
-    """Return players; the genome of player k is (k, k) and its key 10 + k."""
+    """Return players. Player k has the genome (k, k) and the key 10 + k."""
     genomes = np.repeat(np.arange(count, dtype=np.float32)[:, None], 2, axis=1)
     none: Any = None
     habitat: Any = SimpleNamespace(kind=kind)
@@ -22,13 +22,14 @@ def players(count: int, kind: str = "host") -> Players:
 
 
 def script(count: int) -> Games:
-    """Return games; player k has the actions 10 k, 10 k + 1, ... of k + 1 ticks."""
+    """Return games of k + 1 ticks for player k. Its actions are 10 k, 10 k + 1, ..."""
     none: Any = None
     actions = [10 * k + np.arange(k + 1) for k in range(count)]
     return Games(none, none, none, none, actions)
 
 
 def frozen(count: int) -> Frozen:
+    """Freeze the senses of each second player, and the memory of each third player."""
     number = np.arange(count)[:, None]
     return Frozen(number % 2 == 0, number % 3 == 0)
 
@@ -88,11 +89,11 @@ def test_players_in_parts_keep_their_own_scripts_and_frozen_inputs(
 
 
 PLAYING = np.array([[1, 1, 1, 1], [1, 0, 1, 1], [1, 0, 0, 1], [1, 0, 0, 1]], bool)
-"""Whether each of four games, two of each player, goes on when each of four ticks begins."""
+"""Whether each game goes on in each tick, bool (4 ticks, 2 players with 2 games each)."""
 
 
 def played(food: np.ndarray | None, marks: np.ndarray, monkeypatch: pytest.MonkeyPatch) -> Games:
-    """Return games of four ticks, which are played in stretches of three ticks and of one."""
+    """Play games of four ticks, in a stretch of three ticks and a stretch of one tick."""
     tick = np.arange(1, 5)[:, None]
     actions = tick + 10 * np.arange(4)
     alive = np.array([True, False, False, False])
@@ -107,7 +108,7 @@ def played(food: np.ndarray | None, marks: np.ndarray, monkeypatch: pytest.Monke
 
 
 def marked(*changes: tuple[int, int]) -> np.ndarray:
-    """Return marks of senses (T, N, 2), of which those at some ticks and games are changed."""
+    """Return marks of senses (T, N, 2). Those of the given ticks and games are changed."""
     marks = np.arange(32, dtype=np.uint32).reshape(4, 4, 2)
     for tick, game in changes:
         marks[tick, game] += np.uint32(1000)
@@ -144,10 +145,10 @@ def test_courses_differ_if_senses_differ_in_any_tick_of_the_game(
 
 
 @pytest.mark.parametrize(("kind", "sizes"), [("host", [2, 2, 1]), ("jax", [3, 2])])
-def test_lifespans_are_found_in_parts_of_which_each_has_its_own_frozen_inputs(
+def test_lifespans_are_found_in_parts_and_each_part_has_its_own_frozen_inputs(
     kind: str, sizes: list[int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Five players have two games each; four games are played at once on the host, and six in JAX."""
+    """Five players have two games each. On the host four games are played at once, and in JAX six."""
     asked: list[int] = []
 
     def play_part(own: Players, count: int, ticks: int, *, frozen: Any, at_once: int) -> Any:

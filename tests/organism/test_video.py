@@ -166,7 +166,7 @@ def test_a_gif_has_the_colours_of_the_sample_or_of_its_first_picture(
 
 @pytest.mark.parametrize("sampled", [True, False])
 def test_a_gif_has_more_colours_with_a_sample(sampled: bool, tmp_path: Path) -> None:
-    """A sample may have 256; of the first picture 64 are taken, which is enough for a drawing."""
+    """A sample gives up to 256 colours. The first picture gives 64, which is enough for a drawing."""
     number = np.arange(240).reshape(12, 20).repeat(2, axis=0).repeat(2, axis=1)
     picture = Image.fromarray(
         np.stack([37 * number, 91 * number, 151 * number], axis=2).astype("u1")

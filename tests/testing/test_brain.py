@@ -98,14 +98,14 @@ class Remembering(Plain):
 
 
 class Two(Plain):
-    """Two matrices of one shape."""
+    """A brain with two matrices of one shape."""
 
     def blocks(self, senses: int, outputs: int) -> dict[str, Shape]:
         return {"v": (outputs, senses), "w": (outputs, senses)}
 
 
 class Partly(Two):
-    """It replaces its second matrix."""
+    """A brain that replaces its second matrix."""
 
     def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
         genome["w"] = genome["w"] + 1
@@ -113,7 +113,7 @@ class Partly(Two):
 
 
 class Herd(Two):
-    """It adds a number of the second matrix of the first organism."""
+    """A brain that adds a number of the first organism's second matrix."""
 
     def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
         return memory, matvec(genome["v"], senses) + genome["w"][0, 0, 0]

@@ -13,7 +13,7 @@ from primordia.testing.lives import HALF, TICKS, Lives, Past, actions
 from primordia.testing.trial import ALL
 
 LATER, SOONER = 9, 4
-"""The ages at which bodies with an even word die; those with a multiple of 4 die sooner."""
+"""The ages at which bodies with an even word die. Bodies with a multiple of 4 die sooner."""
 
 
 class Noted(HostHabitat):
@@ -47,7 +47,7 @@ class Noted(HostHabitat):
         last = np.where(self.bodies[:, 0] % 4 == 0, SOONER, LATER)
         dies = (self.bodies[:, 0] % 2 == 0) & (self.bodies[:, 1] >= last)
         none = np.zeros(len(alive), bool)
-        return self.bodies, Outcome(**{"fatal": none, self.ends: dies})  # also later the same array
+        return self.bodies, Outcome(**{"fatal": none, self.ends: dies})  # the array of every tick
 
     def save(self) -> dict[str, np.ndarray]:
         return {"bodies": self.bodies}
@@ -115,10 +115,10 @@ def test_all_lives_are_played_to_their_ends_side_by_side(
         ]
 
 
-def test_the_counts_of_each_tick_are_noted_also_if_the_habitat_goes_on_in_one_array(
+def test_the_counts_of_each_tick_are_noted_if_the_habitat_returns_the_same_array(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """A count is the age of the body plus 7."""
+    """The count is the age of the body plus 7."""
     counts = np.zeros((ALL, 1), np.int32)
 
     def tally(self: Noted) -> np.ndarray:

@@ -1,7 +1,8 @@
-"""The check of a JAX habitat in a compiled loop: every reported number of every tick is compared."""
+"""The check of a JAX habitat in a compiled loop compares each reported value of each tick."""
 
-from typing import Any, ClassVar
+from typing import ClassVar
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -33,46 +34,60 @@ class Reporting(JaxHabitat, Settings):
         return bodies + 1, Outcome(never, food=number, effort=number, expired=never)
 
 
+HABITAT = Reporting()
 BODY, TICK = 5, TICKS - 1
+Looped = tuple[np.ndarray, np.ndarray, Outcome]
 
 
-def lived(**changed: Any) -> tuple[Any, ...]:
-    """Return what `_looped` returns of the lives, with a value changed in the last tick of a body."""
-    born = np.arange(ALL, dtype=np.float32)[:, None]
-    numbers = born[None] + np.arange(TICKS, dtype=np.float32)[:, None, None]
-    never = np.zeros((TICKS, ALL), bool)
-    outcome = {"fatal": never, "food": numbers[..., 0], "effort": numbers[..., 0], "expired": never}
-    values = {name: each.copy() for name, each in (outcome | {"senses": numbers + 1}).items()}
-    for name, value in changed.items():
-        values[name][TICK, BODY] = value
+@pytest.fixture(scope="module")
+def looped() -> Looped:
+    """Return senses at birth, later senses and outcomes of lives in a loop."""
+    lives = Lives(HABITAT)
+    return jax.tree.map(np.asarray, checks._looped(HABITAT, lives.words, lives.actions))
+
+
+@pytest.fixture(scope="module")
+def stepped() -> list[Past]:
+    """Return the same lives, stepped tick by tick."""
+    return Lives(HABITAT).whole()
+
+
+def changed(looped: Looped, name: str) -> Looped:
+    """Return the lives with another value in the last tick of a body: a number is 0, or False is True."""
+    born, senses, outcome = looped
+    values = {**outcome._asdict(), "senses": senses}
+    values[name] = values[name].copy()
+    values[name][TICK, BODY] = values[name][TICK, BODY] == 0
     senses = values.pop("senses")
     return born, senses, Outcome(**values)
 
 
-def pasts() -> list[Past]:
-    return checks._pasts(lived())
-
-
 @pytest.mark.parametrize("name", ["senses", "fatal", "food", "effort", "expired"])
 @pytest.mark.parametrize(
-    ("traces", "says"),
-    [((1, 1), "in a compiled loop than when it is stepped"), ((0, 1), "when it is traced again")],
+    ("first", "says"),
+    [
+        ("changed", "in a compiled loop than when it is stepped"),
+        ("same", "when it is traced again"),
+    ],
 )
-def test_a_number_that_differs_in_a_loop_is_found(
-    name: str, traces: tuple[int, int], says: str, monkeypatch: pytest.MonkeyPatch
+def test_each_value_that_differs_in_a_loop_is_found(
+    name: str,
+    first: str,
+    says: str,
+    looped: Looped,
+    stepped: list[Past],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """The test gives the lives of both traces. One value of the last tick of a body is changed."""
-    results = iter([lived(**{name: True}) if changed else lived() for changed in traces])
-    monkeypatch.setattr(checks, "_looped", lambda *_: next(results))
-    habitat = Reporting()
+    """The lives are traced twice. The value differs in both traces, or only in the second one."""
+    other = changed(looped, name)
+    traces = iter([other if first == "changed" else looped, other])
+    monkeypatch.setattr(checks, "_looped", lambda *_: next(traces))
     with pytest.raises(
         ContractError, match=f"body {BODY} has a different life at age {TICKS} {says}"
     ):
-        checks._in_a_loop(habitat, Lives(habitat), pasts())
+        checks._in_a_loop(HABITAT, Lives(HABITAT), stepped)
 
 
-def test_equal_lives_in_a_loop_pass(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(checks, "_looped", lambda *_: lived())
-    habitat = Reporting()
-    checks._in_a_loop(habitat, Lives(habitat), pasts())
-    assert [len(past) for past in pasts()] == [TICKS + 1] * ALL
+def test_equal_lives_in_a_loop_pass(stepped: list[Past]) -> None:
+    checks._in_a_loop(HABITAT, Lives(HABITAT), stepped)
+    assert [len(past) for past in stepped] == [TICKS + 1] * ALL

@@ -177,7 +177,7 @@ class Elsewhere(Steady):
 
 
 class Misled(Steady):
-    """A season of one of its settings changes a rate that it does not have."""
+    """A mutation with a setting whose season changes a rate that the mutation does not have."""
 
     size_of_blocks: Rate = 1.0
 
