@@ -31,7 +31,7 @@ from primordia.mutations import contract as mutations
 from primordia.mutations.checks import check_mutation
 from primordia.own_code import LIBRARIES
 from primordia.settings.base import Rate, Settings
-from primordia.settings.fields import first_fault, rates_of, setting_fields
+from primordia.settings.fields import first_fault, rates_of, refusal, setting_fields
 from primordia.settings.limits import ForkedFrom, Stop
 from primordia.settings.making import make
 from primordia.settings.tables import (
@@ -233,9 +233,9 @@ def _parsed(values: dict[str, Any], source: str, others: Callable[[], list[str]]
         check_values(values)
         return Config.model_validate(replaced(values, NONE, None))
     except ValidationError as error:
-        raise InputError(f"{source}: {first_fault(error, Config, others=others())}") from None
+        raise refusal(source, first_fault(error, Config, others=others())) from None
     except InputError as error:  # of a value
-        raise InputError(f"{source}: {error}") from None
+        raise refusal(source, error) from None
 
 
 def _completed(config: Config, source: str) -> Config:
@@ -247,7 +247,7 @@ def _completed(config: Config, source: str) -> Config:
             own = make(part, table, CONTRACTS[part].find).model_dump()
             built[part] = {PARTS[part]: default, **table, **own}
     except InputError as error:
-        raise InputError(f"{source}: {error}") from None
+        raise refusal(source, error) from None
     return config.model_copy(update=built)
 
 
@@ -271,9 +271,9 @@ def checked(config: Config, source: str) -> Config:
     try:
         _check(config)
     except ValidationError as error:
-        raise InputError(f"{source}: {first_fault(error, Config)}") from None
+        raise refusal(source, first_fault(error, Config)) from None
     except (InputError, ValueError) as error:
-        raise InputError(f"{source}: {error}") from None
+        raise refusal(source, error) from None
     return config
 
 

@@ -8,6 +8,7 @@ import pytest
 
 from primordia import own_code
 from primordia.cli import cache
+from primordia.cli.commands import commands
 from primordia.runs import code
 from tests.commands import COMMAND, environment
 
@@ -19,7 +20,7 @@ CPU = (
 @pytest.mark.slow
 def test_a_command_keeps_its_compiled_code(tmp_path: Path) -> None:
     home = {"XDG_CACHE_HOME": str(tmp_path / "cache")}
-    others = ("JAX_COMPILATION_CACHE", "JAX_PERSISTENT_CACHE")
+    others = ("JAX_COMPILATION_CACHE", "JAX_PERSISTENT_CACHE", "JAX_DISABLE_MOST", "XLA_FLAGS")
     variables = {
         name: value for name, value in environment().items() if not name.startswith(others)
     }
@@ -112,3 +113,15 @@ def test_only_the_features_of_the_first_core_count(line: str, tmp_path: Path) ->
 
     assert named("x") != named("y")
     assert named("x") == named("x", clock=3000) == named("x", other="y")
+
+
+def test_the_cache_is_switched_off_before_the_check_of_an_option_imports_jax() -> None:
+    """JAX reads the variable that `--no-cache` sets when it is imported."""
+    found = [
+        option
+        for command in commands.commands.values()
+        for option in command.params
+        if option.name == "no_cache"
+    ]
+    assert len(found) > 5
+    assert all(option.is_eager for option in found)

@@ -16,7 +16,7 @@ from primordia.runs import loop
 from tests import commands
 from tests.experiments.meadows import write
 
-SETTINGS = {"stop": {"ticks": 60_000}, "seeds": 3, "jobs": {"worlds": 1}}
+SETTINGS = {"stop": {"ticks": 200_000}, "seeds": 3, "jobs": {"worlds": 1}}
 
 
 def digests(place: Path) -> list[str]:
@@ -69,7 +69,7 @@ def test_an_experiment_that_is_killed_five_times_has_the_same_worlds(
     while kills < 5:
         begun = commands.begin(*words, "--quiet", session=True)
         try:
-            begun.communicate(timeout=draws.uniform(1.0, 12.0))
+            begun.communicate(timeout=draws.uniform(0.5, 4.0))
             break
         except subprocess.TimeoutExpired:
             kill_all(out)

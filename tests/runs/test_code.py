@@ -2,6 +2,7 @@
 
 import importlib
 import importlib.util
+import os
 import py_compile
 import shutil
 import subprocess
@@ -129,6 +130,17 @@ def test_a_module_that_was_imported_before_goes_to_another_process_too(
     importlib.import_module("pond")
     assert "pond" not in own_code._admitted.sources
     assert set(own_code.admitted(["pond"])) == {"pond.py", "pond_depth.py"}
+
+
+@pytest.mark.parametrize(
+    ("command", "says"), [("verify", "is missing; put"), ("resume", "is not a regular file; put")]
+)
+def test_a_pipe_in_place_of_code_is_not_read(folder: Path, command: str, says: str) -> None:
+    run = begun(folder)
+    part = run / "code" / "pond_depth.py"
+    part.unlink()
+    os.mkfifo(part)
+    complains(here(command, run), 1, f"pond_depth.py {says}")
 
 
 @pytest.mark.parametrize("kind", ["deep", "link"])

@@ -69,10 +69,10 @@ def recorded(folder: Path, fork: bool) -> Recorded:
     root.mkdir()
     disk, run, saved = Disk(root), root / "some" / "run", list[tuple[int, int]]()
     with pytest.MonkeyPatch.context() as patch, disk.watched():
-        for name in ("save", "save_origin"):
-            patch.setattr(checkpoint, name, noting(getattr(checkpoint, name), disk, saved))
+        patch.setattr(checkpoint, "save", noting(checkpoint.save, disk, saved))
         if fork:
             source.fork(HALF // 2, run, seed=7)
+            saved.append((len(disk.instants), HALF // 2))
         else:
             loop.start(settings, run, checkpoint_every=0.0)
         loop.resume(run, {"ticks": TICKS}, checkpoint_every=0.0)

@@ -202,6 +202,14 @@ def test_any_file_is_taken_or_refused(tmp_path: Path, text: str) -> None:
     file_is_taken_or_refused(text, tmp_path)
 
 
+@pytest.mark.parametrize("odd", ["\n", "\x85", "\u2028", "\x1b"])
+def test_a_name_that_breaks_lines_is_escaped(odd: str) -> None:
+    with pytest.raises(InputError) as raised:
+        load("HalfCheetah-forager", {"habitat": {"file": f"gymnasium:{odd}.xml"}})
+    assert str(raised.value).isprintable()
+    assert repr(odd)[1:-1] in str(raised.value)
+
+
 @pytest.mark.slow
 @THOUSANDS
 @given(mangled())

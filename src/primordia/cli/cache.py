@@ -55,6 +55,7 @@ cache_option = click.option(
     "--no-cache",
     is_flag=True,
     expose_value=False,
+    is_eager=True,  # before an option whose check imports JAX, which reads the variable at once
     callback=_compile_again,
     help="Neither read nor write the cache of compiled code.",
 )

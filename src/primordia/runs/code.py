@@ -122,12 +122,17 @@ def _check_files(folder: Path, described: set[str]) -> None:
     folders = {str(parent) for name in described for parent in Path(name).parents}
     waiting, held = [folder] if folder.is_dir() else [], set[str]()
     while waiting:
-        for each in os.scandir(waiting.pop()):
-            name = Path(each.path).relative_to(folder).as_posix()
-            if each.is_dir(follow_symlinks=False) and name in folders:
-                waiting.append(Path(each.path))
-            else:
-                held.add(name)
+        with os.scandir(waiting.pop()) as entries:
+            for each in entries:
+                name = Path(each.path).relative_to(folder).as_posix()
+                if each.is_dir(follow_symlinks=False) and name in folders:
+                    waiting.append(Path(each.path))
+                elif name in described and not each.is_file():  # a pipe could block for ever
+                    raise Trouble(
+                        f"{each.path} is not a regular file; put the run's own in its place"
+                    )
+                else:
+                    held.add(name)
     if held != described:
         odd = min(held ^ described)
         raise Trouble(f"{folder / odd} is missing, or was added after the run began")

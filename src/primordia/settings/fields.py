@@ -6,6 +6,8 @@ from typing import Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
+from primordia.errors import InputError
+from primordia.printable import printable
 from primordia.settings.base import SEASONAL, Settings
 from primordia.settings.tables import did_you_mean
 from primordia.settings.values import shown
@@ -49,6 +51,11 @@ def _model_in(annotation: Any) -> type[BaseModel] | None:
     )
     models = [o for o in options if isinstance(o, type) and issubclass(o, BaseModel)]
     return models[0] if models else None
+
+
+def refusal(source: str, fault: object) -> InputError:
+    """Return the error about a wrong setting: one line, whatever names and values it quotes."""
+    return InputError(printable(f"{source}: {fault}", kept=""))
 
 
 def first_fault(
