@@ -2,12 +2,16 @@
 
 import io
 import os
+import signal
 import subprocess
 import sys
-from contextlib import redirect_stderr, redirect_stdout
+from collections.abc import Iterator
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
+
+import pytest
 
 from primordia.cli.commands import execute
 from primordia.cli.streams import Printable
@@ -19,6 +23,8 @@ COMMAND = [sys.executable, "-m", "primordia"]
 AFRESH = {"JAX_ENABLE_COMPILATION_CACHE": "false"}
 """The variable of a process that compiles everything itself. JAX keeps code by what it computes, not by
 the number of threads that it was compiled for."""
+SECONDS = 120
+"""A command that takes longer waits for something that never comes."""
 
 
 def environment() -> dict[str, str]:
@@ -52,3 +58,19 @@ def complains(done: subprocess.CompletedProcess[str], status: int, *parts: str) 
     assert done.stderr.startswith("primordia: ")
     for part in parts:
         assert part in done.stderr, done.stderr
+
+
+@contextmanager
+def watched() -> Iterator[None]:
+    """Fail if the block does not end."""
+
+    def give_up(*_: object) -> None:
+        pytest.fail("the command waits for ever")  # commands report OSError, such as TimeoutError
+
+    before = signal.signal(signal.SIGALRM, give_up)
+    signal.alarm(SECONDS)
+    try:
+        yield
+    finally:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, before)

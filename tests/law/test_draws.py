@@ -126,7 +126,7 @@ def test_children_mutate_with_the_chances_of_their_world(after: Turned) -> None:
 def test_a_child_is_of_its_parents_branch_even_if_the_low_word_of_the_branch_is_0(
     after: Turned,
 ) -> None:
-    """Only founders have the branch 0. A world of one branch has come to fixation."""
+    """Only founders have branch 0. A branch is fixed once all organisms of a world belong to it."""
     branch, cells = to_host(after.organisms.branch), after.births["cell"]
     assert branch[cells].tolist() == [BRANCHES[cell // N] for cell in cells]
     assert to_host(after.worlds.fixed).tolist() == [TICK] * W

@@ -16,7 +16,7 @@ from primordia import own_code
 from primordia.errors import InputError
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs.archive import Archive
-from tests.commands import COMMAND, complains, environment, here
+from tests.commands import COMMAND, complains, environment, here, watched
 from tests.strangers import PARTS, POND, begun, forget
 
 
@@ -140,7 +140,9 @@ def test_a_pipe_in_place_of_code_is_not_read(folder: Path, command: str, says: s
     part = run / "code" / "pond_depth.py"
     part.unlink()
     os.mkfifo(part)
-    complains(here(command, run), 1, f"pond_depth.py {says}")
+    with watched():
+        done = here(command, run)
+    complains(done, 1, f"pond_depth.py {says}")
 
 
 @pytest.mark.parametrize("kind", ["deep", "link"])

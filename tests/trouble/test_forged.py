@@ -8,10 +8,9 @@ import json
 import os
 import random
 import shutil
-import signal
 import tomllib
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +21,7 @@ import pytest
 import tomli_w
 
 from primordia.runs import loop
-from tests.commands import here
+from tests.commands import here, watched
 from tests.trouble import newest, reseal
 from tests.worlds import MILL, config
 
@@ -50,8 +49,6 @@ COMMANDS = [
     ["assay", "threshold", "{run}"],
     ["assay", "line", "{run}", "--ticks", "20"],
 ]
-SECONDS = 120
-"""A command that takes longer waits for something that never comes."""
 
 NUMBERS: list[Any] = [
     *(0, -1, 2**30, 2**31, 2**53 - 1, 2**62, 2**63, 2**64, 10**400),
@@ -248,22 +245,6 @@ CHANGES: list[Change] = [
     arrays_changed,
     table_changed,
 ]
-
-
-@contextmanager
-def watched() -> Iterator[None]:
-    """Fail if the block does not end."""
-
-    def give_up(*_: object) -> None:
-        pytest.fail("the command waits for ever")  # commands report OSError, such as TimeoutError
-
-    before = signal.signal(signal.SIGALRM, give_up)
-    signal.alarm(SECONDS)
-    try:
-        yield
-    finally:
-        signal.alarm(0)
-        signal.signal(signal.SIGALRM, before)
 
 
 def forged(made: Path, folder: Path, seed: int) -> tuple[Path, list[str]]:
