@@ -44,7 +44,7 @@ def test_a_package_has_precedence_and_its_parts_may_be_in_several_places(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Python does the same: a folder with `__init__.py` hides a file, and folders without it add up."""
-    for name in ("one/reeds/a.py", "two/reeds/b.py", "two/pond/__init__.py", "two/pond.py"):
+    for name in ("one/reeds/a.py", "two/reeds/b.py", "two/mere/__init__.py", "two/mere.py"):
         (tmp_path / name).parent.mkdir(exist_ok=True, parents=True)
         (tmp_path / name).touch()
     monkeypatch.chdir(tmp_path)
@@ -53,7 +53,7 @@ def test_a_package_has_precedence_and_its_parts_may_be_in_several_places(
     for module, place, name in (
         ("reeds.a", "one", "reeds/a.py"),
         ("reeds.b", "two", "reeds/b.py"),
-        ("pond", "two", "pond/__init__.py"),
+        ("mere", "two", "mere/__init__.py"),
     ):
         found = {file: source.file for file, source in own_code.found(module).items()}
         assert found == {name: tmp_path / place / name}
