@@ -2,8 +2,8 @@
 
     python benchmarks/bench.py [--json FILE] [--only SECTION,...]
 
-Sections: paper, speed, plain, live, cells, operators, atari, robots, gymnasium, gymnax, craftax, jobs,
-campaign, cores, bookkeeping, shell, records.
+Sections: paper, speed, plain, live, cells, operators, atari, courses, robots, gymnasium, gymnax, craftax,
+jobs, campaign, cores, bookkeeping, shell, records.
 
 Compare speeds within one run only. Machines differ, and one machine differs from hour to hour.
 """
@@ -16,6 +16,7 @@ import platform
 from pathlib import Path
 
 import campaigns
+import courses
 import functional
 import hosted
 import jobs
@@ -34,6 +35,7 @@ SECTIONS = {
     "cells": scale.cost_by_cells,
     "operators": operators.against_fixed_mutation,
     "atari": hosted.against_the_emulator,
+    "courses": courses.against_every_life,
     "robots": hosted.against_the_batch,
     "gymnasium": hosted.against_gymnasium,
     "gymnax": functional.against_our_cartpole,

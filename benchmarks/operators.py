@@ -1,18 +1,16 @@
 """Cost of the operators of heredity: worlds under each of them, against the fixed Gaussian mutation."""
 
-import time
-
-import numpy as np
-
 from primordia.config import load
 from primordia.engine.engine import Engine
 from primordia.random.wide import to_host
-from worlds import median, organism_ticks
+from worlds import early_rate, median
 
+CHANCE = {"noops": 30}
+"""Without chance no course of a game is emulated twice."""
 TASKS = {
     "CartPole-survival": ({"genesis": "fill"}, 20_000),
-    "Pong-survival": ({}, 1_500),
-    "Boxing-survival-fight": ({"seasons": []}, 1_500),
+    "Pong-survival": ({"habitat": CHANCE}, 1_500),
+    "Boxing-survival-fight": ({"habitat": CHANCE, "seasons": []}, 1_500),
 }
 """Settings and ticks of each task: young worlds, in which most births happen."""
 OPERATORS = {
@@ -35,9 +33,10 @@ def _measured(task: str, operator: str) -> dict:
     fixed = Engine(load(task, {**settings, "mutation": {"probability": 0.5}}))
     other = Engine(load(task, {**settings, **_with(OPERATORS[operator], shared)}))
     for engine in (fixed, other):  # compile
-        _rate(engine, 0, ticks)
+        early_rate(engine, 0, ticks)
     pairs = [
-        (_rate(other, seed, ticks), _rate(fixed, seed, ticks)) for seed in range(1, ROUNDS + 1)
+        (early_rate(other, seed, ticks), early_rate(fixed, seed, ticks))
+        for seed in range(1, ROUNDS + 1)
     ]
     births = int(to_host(other.state.world.worlds.births)[0])
     return {
@@ -52,13 +51,3 @@ def _with(changes: dict, shared: dict) -> dict:
     if "mutation" not in changes:
         return {**changes, "mutation": {"probability": 0.5}}
     return {**changes, "mutation": {**changes["mutation"], **shared}}
-
-
-def _rate(engine: Engine, seed: int, ticks: int) -> float:
-    """Return organism-ticks per second of the first ticks of a new world."""
-    engine.state = engine.chunks.begin(np.array([seed]))
-    limits = engine.limits({"ticks": ticks})
-    began = time.perf_counter()
-    while engine.any_running(limits):
-        engine.advance(limits)
-    return organism_ticks(engine) / (time.perf_counter() - began)

@@ -177,8 +177,10 @@ class Atari(HostHabitat, Settings):
             ),
             "actions": self._buttons,
         }
+        chance = self.words > 0
+        kind = "simulator:Arcade" if chance or watched else "tree:TreeArcade"
         self._pool = open_pool(
-            "primordia.habitats.atari.simulator:Arcade",
+            f"primordia.habitats.atari.{kind}",
             settings,
             FIELDS | screen,
             cells,

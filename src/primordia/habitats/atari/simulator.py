@@ -154,11 +154,15 @@ class Arcade:
 
     def reset(self, cell: int) -> None:
         """Begin a game at its start, or after a random number of no-ops; `noops` is the limit."""
-        (ale, _), words = self._consoles[cell], self._arrays["words"][cell].tolist()
-        ale.restoreState(self._start)
-        for _ in range(words[0] % (self._noops + 1)):
-            ale.act(NOOP)
+        words = self._arrays["words"][cell].tolist()
         self._dice[cell], self._held[cell] = dice.begin(*words), NOOP
+        self._begin(cell, words[0] % (self._noops + 1))
+
+    def _begin(self, cell: int, noops: int) -> None:
+        ale = self._consoles[cell][0]
+        ale.restoreState(self._start)
+        for _ in range(noops):
+            ale.act(NOOP)
         self._fill_row(cell)
 
     def _fill_row(self, cell: int) -> None:
