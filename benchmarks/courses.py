@@ -1,4 +1,4 @@
-"""Worlds of games without chance, against the same worlds with every life emulated.
+"""Worlds of games without sticky buttons, against the same worlds with every life emulated.
 
 In such games no course is emulated twice (`habitats/atari/tree.py`). How many lives share a course
 depends on the world: on the share of exact copies, and on how alike mutants and parents act. So each

@@ -5,12 +5,12 @@ from primordia.engine.engine import Engine
 from primordia.random.wide import to_host
 from worlds import early_rate, median
 
-CHANCE = {"noops": 30}
-"""Without chance no course of a game is emulated twice."""
+STICKY = {"sticky": 0.25}
+"""Without sticky buttons no course of a game is emulated twice."""
 TASKS = {
     "CartPole-survival": ({"genesis": "fill"}, 20_000),
-    "Pong-survival": ({"habitat": CHANCE}, 1_500),
-    "Boxing-survival-fight": ({"habitat": CHANCE, "seasons": []}, 1_500),
+    "Pong-survival": ({"habitat": STICKY}, 1_500),
+    "Boxing-survival-fight": ({"habitat": STICKY, "seasons": []}, 1_500),
 }
 """Settings and ticks of each task: young worlds, in which most births happen."""
 OPERATORS = {

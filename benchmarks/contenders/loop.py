@@ -23,12 +23,12 @@ NO_DEATH: dict[str, dict] = {
     if game in ROBOTS
     else {}
     if game in ENVIRONMENTS
-    else {"habitat": {"fatal": "game_over", "noops": 30}}
+    else {"habitat": {"fatal": "game_over", "sticky": 0.25}}
     for game in TASKS
 }
 """settings under which organisms die only by accident, or when the game is over
 
-Games begin with no-ops, since no course of a game without chance is emulated twice."""
+Buttons are sticky, since otherwise no course of a game is emulated twice."""
 
 
 class Lacking(Exception):  # noqa: N818

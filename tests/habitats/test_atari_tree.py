@@ -1,4 +1,4 @@
-"""Games without chance are emulated once: the same lives, from fewer frames."""
+"""Games without sticky buttons are emulated once: the same lives, from fewer frames."""
 
 from collections import Counter
 from typing import Any
@@ -16,7 +16,7 @@ pytest.importorskip("ale_py")
 
 CELLS = 5
 PONG: dict[str, Any] = {
-    "game": "pong", "actions": [0, 3, 4], "mode": None, "difficulty": None,
+    "game": "pong", "actions": [0, 1, 3, 4], "mode": None, "difficulty": None,
     "frame_skip": 1, "sticky": 0.0, "noops": 0,
 }  # fmt: skip
 
@@ -56,34 +56,39 @@ def pressed(made: Arcade, arrays: dict[str, np.ndarray], buttons: dict[int, int]
     made.step(list(buttons))
 
 
-@pytest.mark.parametrize("skip", [1, 3])
+@pytest.mark.parametrize(
+    ("game", "skip", "noops"), [("pong", 1, 0), ("breakout", 3, 0), ("pong", 1, 4)]
+)
 @pytest.mark.parametrize("positions", [80, 150, 10_000])
 def test_lives_are_those_of_emulators_that_forget_nothing_and_share_nothing(
-    positions: int, skip: int, monkeypatch: pytest.MonkeyPatch
+    game: str, positions: int, skip: int, noops: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """All rows and saved states are equal, whatever is born, saved and loaded, and when.
 
-    Most buttons follow one score, so that many cells share a course. There is room for few positions.
+    In Breakout lives are lost; its second button serves. Most buttons follow one score, so that many
+    cells share a course. There is room for few positions.
     """
     monkeypatch.setattr(tree, "POSITIONS", positions)
     monkeypatch.setattr(tree, "EVERY", 7)
-    dice = np.random.default_rng(positions + skip)
-    score = dice.integers(0, 3, 400)
-    pairs = [arcade(kind, frame_skip=skip) for kind in (Arcade, TreeArcade)]
+    dice = np.random.default_rng(positions + skip + noops)
+    score = dice.integers(0, 4, 400)
+    pairs = [arcade(kind, game=game, frame_skip=skip, noops=noops) for kind in (Arcade, TreeArcade)]
     age, saved = np.zeros(CELLS, int), [pair[0].save(0) for pair in pairs]
     assert saved[0] == saved[1]
     saved_age = 0
     for _ in range(400):
         cells = np.flatnonzero(dice.random(CELLS) < 0.8).tolist()
         strays = dice.random(CELLS) < 0.02
-        buttons = {c: int(dice.integers(3) if strays[c] else score[age[c]]) for c in cells}
+        buttons = {c: int(dice.integers(4) if strays[c] else score[age[c]]) for c in cells}
         age[cells] += 1
         for made, arrays in pairs:
             pressed(made, arrays, buttons)
         cell, event = int(dice.integers(CELLS)), dice.random()
         if event < 0.03:
             age[cell] = 0
-            for made, _ in pairs:
+            words = dice.integers(0, 2**32, 2)
+            for made, arrays in pairs:
+                arrays["words"][cell] = words
                 made.reset(cell)
         elif event < 0.06:
             saved, saved_age = [made.save(cell) for made, _ in pairs], age[cell]
@@ -100,7 +105,7 @@ def test_a_course_is_emulated_once(frames: Counter[str]) -> None:
     """Cells that press the same buttons share its frames, also if one of them was born later."""
     made, arrays = arcade(TreeArcade)
     before = frames["act"]
-    score = np.random.default_rng(0).integers(0, 3, 100).tolist()
+    score = np.random.default_rng(0).integers(0, 4, 100).tolist()
     for button in score:
         pressed(made, arrays, {0: button, 1: button})
     assert frames["act"] - before == 100
@@ -145,6 +150,46 @@ def test_only_the_start_and_the_present_are_kept_when_room_is_used_up(
     assert made._node[4] == made._node[3] != START
 
 
+@pytest.mark.parametrize("event", ["load", "reset"])
+def test_nothing_is_mixed_up_if_there_is_no_room_at_a_birth_or_load(
+    event: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tree, "POSITIONS", 1)
+    made, arrays = arcade(TreeArcade, noops=9)
+    other, alone = arcade(Arcade, noops=9)
+    assert isinstance(made, TreeArcade)
+    later = other.save(1)
+    for _ in range(9):
+        for kind, rows in ((made, arrays), (other, alone)):
+            pressed(kind, rows, {0: 1, 1: 1})
+    for _ in range(16 * CELLS - made._tree.size):
+        pressed(made, arrays, {2: 2})
+    for kind, rows in ((made, arrays), (other, alone)):
+        rows["words"][1] = 7
+        if event == "load":
+            kind.load(1, later)
+        else:
+            kind.reset(1)
+        for tick in range(30):
+            pressed(kind, rows, {0: tick % 4, 1: tick % 4})
+    for cell in (0, 1):
+        assert made.save(cell) == other.save(cell)
+        np.testing.assert_array_equal(arrays["ram"][cell], alone["ram"][cell])
+
+
+def test_a_number_of_no_ops_is_played_once(frames: Counter[str]) -> None:
+    made, arrays = arcade(TreeArcade, noops=9)
+    before = frames["act"]
+    for cell, words in enumerate([(7, 0), (17, 1), (3, 2)]):
+        arrays["words"][cell] = words
+        made.reset(cell)
+    assert frames["act"] - before == 7 + 3, (
+        "the second begins with 17 - 10 no-ops, as the first does"
+    )
+    pressed(made, arrays, {0: 1, 1: 1, 2: 1})
+    assert frames["act"] - before == 7 + 3 + 2
+
+
 def test_an_emulator_that_does_not_repeat_its_game_is_an_error() -> None:
     made, arrays = arcade(TreeArcade)
     assert isinstance(made, TreeArcade)
@@ -157,10 +202,10 @@ def test_an_emulator_that_does_not_repeat_its_game_is_an_error() -> None:
 
 @pytest.mark.parametrize(
     ("chance", "watched", "kind"),
-    [({}, False, TreeArcade), ({}, True, Arcade), ({"noops": 1}, False, Arcade),
+    [({}, False, TreeArcade), ({}, True, Arcade), ({"noops": 1}, False, TreeArcade),
      ({"sticky": 0.1}, False, Arcade)],
 )  # fmt: skip
-def test_games_with_chance_or_screens_are_emulated_one_by_one(
+def test_games_with_sticky_buttons_or_screens_are_emulated_one_by_one(
     chance: dict[str, Any], watched: bool, kind: type[Arcade]
 ) -> None:
     game = Atari(game="pong", workers=0, **chance)

@@ -177,8 +177,7 @@ class Atari(HostHabitat, Settings):
             ),
             "actions": self._buttons,
         }
-        chance = self.words > 0
-        kind = "simulator:Arcade" if chance or watched else "tree:TreeArcade"
+        kind = "simulator:Arcade" if self.sticky or watched else "tree:TreeArcade"
         self._pool = open_pool(
             f"primordia.habitats.atari.{kind}",
             settings,

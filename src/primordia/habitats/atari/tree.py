@@ -1,10 +1,10 @@
-"""Games without chance, of which no course is emulated twice.
+"""Games without sticky buttons, of which no course is emulated twice.
 
-If nothing is drawn at random, a game depends only on the buttons pressed since its start. So the games
-that were played form a tree: each node is a position of the game, and each edge is a button. A life that
-presses the same buttons as an earlier life passes through known nodes, which are read. The life is
-emulated from its first other button on. A copy follows its parent to the end, and a mutant follows it
-until the two act differently.
+Such a game depends only on the number of no-ops at its start and on the buttons pressed since. So the
+games that were played form trees: each node is a position of the game, and each edge is a button. A life
+that presses the same buttons as an earlier life passes through known nodes, which are read. The life is
+emulated from its first other button on. A copy follows its parent to the end if it begins with as many
+no-ops, and a mutant follows it until the two act differently.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -21,13 +21,13 @@ POSITIONS = 2**18
 EVERY = 64
 """nodes from one kept state of the emulator to the next; a state has 8 kB, and takes 16 us to clone"""
 START = 0
-"""the node at the start of the game; no edge leads to it"""
+"""the node at the start of the game, without no-ops; no edge leads to it"""
 SEEN = ("ram", "points", "lives", "game_over")
 """fields of a node"""
 
 
 class Tree:
-    """The positions that were reached, in the order in which they were first reached."""
+    """The positions that were reached from some starts, in the order in which they were first reached."""
 
     def __init__(self, positions: int, buttons: int) -> None:
         self.size = 0
@@ -44,10 +44,6 @@ class Tree:
         }
         self.states: dict[int, ALEState] = {}
         """states of the emulator at some nodes, at every root among them"""
-
-    def has_room(self, nodes: int) -> bool:
-        """Return whether this number of nodes can be added."""
-        return self.size + nodes <= len(self.before)
 
     def add(self, ale: "ALEInterface", points: int) -> int:
         """Add the emulator's position, without an edge to it, and return its node."""
@@ -82,7 +78,7 @@ class Tree:
 
 
 class TreeArcade(Arcade):
-    """The emulators of some cells, in one process, for a game without chance and without a screen.
+    """The emulators of some cells, in one process, without sticky buttons and without a screen.
 
     The emulator of a cell stays behind while the cell passes through known nodes.
     """
@@ -93,26 +89,26 @@ class TreeArcade(Arcade):
         self._tree = Tree(max(POSITIONS, 16 * cells), len(self._buttons))
         self._node = np.zeros(cells, np.int32)
         """the node of each cell"""
+        self._starts = {0: START}
+        """the node after each number of no-ops that is known"""
         self._place: dict[int, int] = {}
         """the node of each cell's emulator, -1 if it is at none"""
 
     def make(self, cell: int) -> None:
         """Make an emulator for another cell."""
         super().make(cell)
-        if not self._tree.size:
-            self._plant(self._consoles[cell][0])
-        self._place[cell] = START
+        self._place[cell] = START if self._tree.size else self._planted(cell)
 
-    def _plant(self, ale: "ALEInterface") -> int:
-        """Add the emulator's position as a root, and return its node."""
+    def _planted(self, cell: int) -> int:
+        """Add the position of a cell's emulator as a root, and return its node."""
+        ale, _ = self._consoles[cell]
         node = self._tree.add(ale, 0)
         self._tree.states[node] = ale.cloneState()
         return node
 
     def step(self, cells: list[int]) -> None:
         """Let one tick pass; only courses that are not known yet are emulated."""
-        if not self._tree.has_room(len(cells)):
-            self._forget()
+        self._make_room(len(cells))
         nodes, buttons = self._node[cells], self._arrays["action"].take(cells)
         after = self._tree.after[nodes, buttons]
         for place in np.flatnonzero(after == 0).tolist():
@@ -150,22 +146,33 @@ class TreeArcade(Arcade):
             self._place[cell] = node
         return ale
 
-    def _forget(self) -> None:
-        """Begin another tree, with the start and the cells' present positions as its roots."""
+    def _make_room(self, nodes: int) -> None:
+        """Begin another tree if this one has no room for more nodes.
+
+        Its roots are the start and the cells' present positions. Starts after no-ops are forgotten, since
+        there may be thousands.
+        """
+        if self._tree.size + nodes <= len(self._tree.before):
+            return
         old, cells = self._tree, {int(self._node[cell]): cell for cell in self._consoles}
         states = {START: old.states[START]}
         for node, cell in cells.items():
             if node not in states:
                 states[node] = self._brought(cell).cloneState()
+        self._starts = {0: START}
         self._tree, roots = old.replanted(states), {node: root for root, node in enumerate(states)}
         for cell in self._consoles:
             self._node[cell] = roots[int(self._node[cell])]
             self._place[cell] = roots.get(self._place[cell], -1)
 
     def _begin(self, cell: int, noops: int) -> None:
-        self._node[cell] = START
+        self._make_room(1)
+        if noops not in self._starts:
+            super()._begin(cell, noops)
+            self._starts[noops] = self._place[cell] = self._planted(cell)
+        self._node[cell] = self._starts[noops]
         for name, known in self._tree.rows.items():
-            self._arrays[name][cell] = known[START]
+            self._arrays[name][cell] = known[self._node[cell]]
 
     def save(self, cell: int) -> bytes:
         """Return the dice, the button held, and the emulator's serialised state."""
@@ -174,7 +181,6 @@ class TreeArcade(Arcade):
 
     def load(self, cell: int, state: bytes) -> None:
         """Restore a state that `save` returned."""
+        self._make_room(1)
         super().load(cell, state)
-        if not self._tree.has_room(1):
-            self._forget()
-        self._node[cell] = self._place[cell] = self._plant(self._consoles[cell][0])
+        self._node[cell] = self._place[cell] = self._planted(cell)
