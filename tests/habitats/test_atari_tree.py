@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from primordia.habitats.atari import simulator, tree
+from primordia.habitats.atari.games import games
 from primordia.habitats.atari.habitat import Atari
 from primordia.habitats.atari.simulator import FIELDS, Arcade, console
 from primordia.habitats.atari.tree import START, TreeArcade
@@ -19,6 +20,8 @@ PONG: dict[str, Any] = {
     "game": "pong", "actions": [0, 1, 3, 4], "mode": None, "difficulty": None,
     "frame_skip": 1, "sticky": 0.0, "noops": 0,
 }  # fmt: skip
+
+OTHERS = [pytest.param(game, 1, 0, marks=pytest.mark.slow) for game in games()]
 
 
 def arcade(kind: type[Arcade], **options: Any) -> tuple[Arcade, dict[str, np.ndarray]]:
@@ -57,7 +60,8 @@ def pressed(made: Arcade, arrays: dict[str, np.ndarray], buttons: dict[int, int]
 
 
 @pytest.mark.parametrize(
-    ("game", "skip", "noops"), [("pong", 1, 0), ("breakout", 3, 0), ("pong", 1, 4)]
+    ("game", "skip", "noops"),
+    [("pong", 1, 0), ("breakout", 3, 0), ("pong", 1, 4), *OTHERS],
 )
 @pytest.mark.parametrize("positions", [80, 150, 10_000])
 def test_lives_are_those_of_emulators_that_forget_nothing_and_share_nothing(

@@ -35,7 +35,7 @@ REFUSED = {
         "the emulator has only a version for several players",
     ),
     **dict.fromkeys(
-        ("miniature_golf", "qbert", "tetris"),
+        ("miniature_golf", "pitfall2", "qbert", "tetris", "tic_tac_toe_3d"),
         "the emulator does not restore its states exactly, so no run could be repeated",
     ),
 }
