@@ -156,6 +156,27 @@ def test_no_ops_are_drawn_from_0_to_the_maximum() -> None:
     assert len(frames) == 4
 
 
+@pytest.mark.parametrize("game", ["pong", "space_invaders", "boxing"])
+def test_a_start_after_no_ops_is_the_same_whatever_starts_are_kept(game: str) -> None:
+    """Each start equals that of an emulator that has played nothing else, and so does its picture."""
+    screen = {SCREEN: ("uint8", (210, 160, 3))}
+    made, arrays = arcade(fields=FIELDS | screen, game=game, actions=[0, 1, 3], noops=200)
+    for noops in (100, 37, 16, 17, 32, 33, 0, 1, 200, 199, 100):
+        arrays["words"][0] = noops, 0
+        made.reset(0)
+        alone = console(game)
+        for _ in range(noops):
+            alone.act(NOOP)
+        np.testing.assert_array_equal(arrays["ram"][0], alone.getRAM())
+        if noops:
+            np.testing.assert_array_equal(arrays[SCREEN][0], alone.getScreenRGB())
+        for tick in range(40):
+            arrays["action"][0] = tick // 9 % 3
+            made.step([0])
+            alone.act([0, 1, 3][tick // 9 % 3])
+            assert (arrays["ram"][0] == alone.getRAM()).all()
+
+
 def test_sticky_buttons_stay_down_as_often_as_the_settings_say() -> None:
     made, _ = arcade(sticky=0.25)
     asked = np.random.default_rng(0).integers(0, 3, 20_000).tolist()

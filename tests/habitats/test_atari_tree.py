@@ -194,6 +194,18 @@ def test_a_number_of_no_ops_is_played_once(frames: Counter[str]) -> None:
     assert frames["act"] - before == 7 + 3 + 2
 
 
+@pytest.mark.parametrize("kind", [Arcade, TreeArcade])
+def test_a_birth_takes_at_most_sixteen_no_ops_once_starts_are_kept(
+    kind: type[Arcade], frames: Counter[str]
+) -> None:
+    made, arrays = arcade(kind, noops=10_000)
+    for noops, emulated in ((1_000, 1_000), (999, 7), (16, 16), (17, 1), (1_003, 11)):
+        before = frames["act"]
+        arrays["words"][0] = noops, 0
+        made.reset(0)
+        assert frames["act"] - before == emulated
+
+
 def test_an_emulator_that_does_not_repeat_its_game_is_an_error() -> None:
     made, arrays = arcade(TreeArcade)
     assert isinstance(made, TreeArcade)

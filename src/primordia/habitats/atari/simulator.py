@@ -42,6 +42,8 @@ REFUSED = {
 """Games that cannot be habitats, and why. All others are restored exactly (tested with ale-py 0.12.1)."""
 SCREEN = "screen"
 """An optional field, uint8 (height, width, 3), which is filled after each tick."""
+SPACING = 16
+"""no-ops from one kept start to the next; a start has 8 kB"""
 
 
 def console(
@@ -98,7 +100,8 @@ class Arcade:
         self._arrays, self._buttons = arrays, np.array(actions)
         self._skip, self._sticky, self._noops = frame_skip, round(sticky * 2**32), noops
         self._game: Game = (game, mode, difficulty)
-        self._start = _start(self._game)
+        self._starts = [_start(self._game)]
+        """states after 0, 16, 32, ... no-ops, as far as lives have begun yet"""
         self._consoles: dict[int, tuple[ALEInterface, np.ndarray]] = {}
         """an emulator and its row of RAM, by cell"""
         weakref.finalize(self, _spare, self._game, self._consoles)
@@ -111,7 +114,7 @@ class Arcade:
         # A screen is not part of a state, so an emulator that has played before is not watched.
         spare = [] if SCREEN in self._arrays else _SPARE[self._game]
         ale = spare.pop() if spare else console(*self._game)
-        ale.restoreState(self._start)
+        ale.restoreState(self._starts[0])
         self._consoles[cell] = ale, self._arrays["ram"][cell]
         if SCREEN in self._arrays:
             self._screen[cell] = self._arrays[SCREEN][cell]
@@ -159,10 +162,14 @@ class Arcade:
         self._begin(cell, words[0] % (self._noops + 1))
 
     def _begin(self, cell: int, noops: int) -> None:
-        ale = self._consoles[cell][0]
-        ale.restoreState(self._start)
-        for _ in range(noops):
+        ale, starts = self._consoles[cell][0], self._starts
+        # A screen is not part of a state, so at least one no-op is emulated.
+        known = min(max(noops - 1, 0) // SPACING, len(starts) - 1)
+        ale.restoreState(starts[known])
+        for passed in range(known * SPACING + 1, noops + 1):
             ale.act(NOOP)
+            if passed == SPACING * len(starts):
+                starts.append(ale.cloneState())
         self._fill_row(cell)
 
     def _fill_row(self, cell: int) -> None:

@@ -89,7 +89,7 @@ class TreeArcade(Arcade):
         self._tree = Tree(max(POSITIONS, 16 * cells), len(self._buttons))
         self._node = np.zeros(cells, np.int32)
         """the node of each cell"""
-        self._starts = {0: START}
+        self._roots = {0: START}
         """the node after each number of no-ops that is known"""
         self._place: dict[int, int] = {}
         """the node of each cell's emulator, -1 if it is at none"""
@@ -159,7 +159,7 @@ class TreeArcade(Arcade):
         for node, cell in cells.items():
             if node not in states:
                 states[node] = self._brought(cell).cloneState()
-        self._starts = {0: START}
+        self._roots = {0: START}
         self._tree, roots = old.replanted(states), {node: root for root, node in enumerate(states)}
         for cell in self._consoles:
             self._node[cell] = roots[int(self._node[cell])]
@@ -167,10 +167,10 @@ class TreeArcade(Arcade):
 
     def _begin(self, cell: int, noops: int) -> None:
         self._make_room(1)
-        if noops not in self._starts:
+        if noops not in self._roots:
             super()._begin(cell, noops)
-            self._starts[noops] = self._place[cell] = self._planted(cell)
-        self._node[cell] = self._starts[noops]
+            self._roots[noops] = self._place[cell] = self._planted(cell)
+        self._node[cell] = self._roots[noops]
         for name, known in self._tree.rows.items():
             self._arrays[name][cell] = known[self._node[cell]]
 
