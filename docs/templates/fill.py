@@ -89,11 +89,6 @@ def effect(name: str, arm: str, column: str) -> Effect:
     return Effect(whole.split()[0], Cell(ratio))
 
 
-def largest(values: str) -> str:
-    """Return the largest of some numbers that are parted by semicolons, as it stands."""
-    return max(values.split("; "), key=lambda value: float(value.replace(",", "")))
-
-
 class Against(NamedTuple):
     """How many calibrated mutations improve more or fewer mutants than scales do."""
 
@@ -235,7 +230,6 @@ def pages() -> dict[Path, str]:
         table=table,
         cell=cell,
         effect=effect,
-        largest=largest,
         least_worlds=least,
         played=played,
         standings=standings,
