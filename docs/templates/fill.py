@@ -21,7 +21,6 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from primordia import config
 from primordia.assays.signs import sign_test
-from primordia.comparison.resample import least
 from primordia.comparison.tables import number_text, spread_text
 from primordia.settings.tables import tasks
 
@@ -230,7 +229,6 @@ def pages() -> dict[Path, str]:
         table=table,
         cell=cell,
         effect=effect,
-        least_worlds=least,
         played=played,
         standings=standings,
         games=games,
@@ -238,7 +236,6 @@ def pages() -> dict[Path, str]:
         sign_test=sign_test,
         ratio=ratio,
         budget=budget,
-        unseen=unseen,
         worlds=worlds,
         seeds=seeds,
         seeds_of_games=seeds_of_games,

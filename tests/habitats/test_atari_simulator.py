@@ -156,10 +156,10 @@ def test_no_ops_are_drawn_from_0_to_the_maximum() -> None:
     assert len(frames) == 4
 
 
-@pytest.mark.parametrize("game", ["pong", "space_invaders", "boxing"])
+@pytest.mark.parametrize("game", [*PAPERS, *OTHERS])
 def test_a_start_after_no_ops_is_the_same_whatever_starts_are_kept(game: str) -> None:
     """Each start equals that of an emulator that has played nothing else, and so does its picture."""
-    screen = {SCREEN: ("uint8", (210, 160, 3))}
+    screen = {SCREEN: ("uint8", console(game).getScreenRGB().shape)}
     made, arrays = arcade(fields=FIELDS | screen, game=game, actions=[0, 1, 3], noops=200)
     for noops in (100, 37, 16, 17, 32, 33, 0, 1, 200, 199, 100):
         arrays["words"][0] = noops, 0
@@ -168,7 +168,7 @@ def test_a_start_after_no_ops_is_the_same_whatever_starts_are_kept(game: str) ->
         for _ in range(noops):
             alone.act(NOOP)
         np.testing.assert_array_equal(arrays["ram"][0], alone.getRAM())
-        if noops:
+        if noops > 1:  # in three games one frame does not draw the whole picture
             np.testing.assert_array_equal(arrays[SCREEN][0], alone.getScreenRGB())
         for tick in range(40):
             arrays["action"][0] = tick // 9 % 3
