@@ -18,7 +18,6 @@ from primordia.brains.layout import Layout
 from primordia.mutations.contract import Change, Draws, Family, Mutation
 from primordia.mutations.noise import standard_noise
 from primordia.random.keys import Purpose, below, chance
-from primordia.rounding import rounded_product
 from primordia.settings.base import Rate
 
 FLOOR, CEILING = -64, 32
@@ -60,7 +59,7 @@ class SelfAdaptive(Mutation):
         mutates = _mutates(rates, draws)
         scale = rates["scale"] * jnp.asarray(FACTORS)[notes[:, 0] - FLOOR]
         noise = standard_noise(draws.streams[Purpose.NOISE], draws.cell, layout.length)
-        mutants = parents + rounded_product(noise, scale[:, None])
+        mutants = parents + noise * scale[:, None]
         return jnp.where(mutates[:, None], mutants, parents), mutates
 
     def founders(self, layout: Layout, draws: Draws) -> Array:

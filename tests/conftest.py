@@ -1,7 +1,6 @@
 """Set-up of all tests: JAX, Hypothesis, and a shared cache of compiled code."""
 
 import os
-from pathlib import Path
 
 import jax
 import pytest
@@ -10,53 +9,15 @@ from hypothesis import HealthCheck, settings
 from primordia import device
 from tests import commands
 
-# XLA compiles faster with its older emitters, and in half the time without optimisation. That code is
-# slower. Its bits are usually the same, since LLVM's usual selector of instructions contracts products
-# and sums; tests of bits take the fixture `optimised`.
-EMITTERS, SELECTOR = "--xla_cpu_use_fusion_emitters", "--xla_backend_extra_options"
-SPLITS = "--xla_cpu_parallel_codegen_split_count"  # into one part: a tenth less work
-flags = os.environ.get("XLA_FLAGS", "")
-if EMITTERS not in flags:
-    own = f"{EMITTERS}=false {SELECTOR}=-fast-isel=false {SPLITS}=1"
-    os.environ["XLA_FLAGS"] = f"{flags} {own}".strip()
 device.prepare()
 
 
-@pytest.fixture(scope="module")
-def optimised() -> None:
-    """Compile the code of this file's tests as users do; see `pytest_runtest_setup`."""
-
-
-OPTIMISED: set[Path] = set()
-"""Files of which some tests take the fixture `optimised`."""
-
-
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Begin with optimised code, and with the files that take longest.
-
-    A process changes to other code once, since this makes it forget all its code. No long file is left
-    to one process at the end.
-    """
+    """Begin with the files that take longest, so none is left to one process at the end."""
     longest = ["docs", "exactness", "shipped", "jobs", "goldens_of_laws", "goldens", "fork", "resume",
                "sharded", "contract", "life", "code", "evaluation"]  # fmt: skip
     places = {f"test_{about}.py": place for place, about in enumerate(longest)}
-    OPTIMISED.update(
-        item.path for item in items if "optimised" in getattr(item, "fixturenames", ())
-    )
-    items.sort(
-        key=lambda item: (item.path not in OPTIMISED, places.get(item.path.name, len(places)))
-    )
-
-
-@pytest.hookimpl(tryfirst=True)
-def pytest_runtest_setup(item: pytest.Item) -> None:
-    """Compile a file's tests with or without optimisation, and those of processes that they start."""
-    without = item.path not in OPTIMISED
-    value = str(without).lower()
-    if os.environ.get("JAX_DISABLE_MOST_OPTIMIZATIONS") != value:
-        os.environ["JAX_DISABLE_MOST_OPTIMIZATIONS"] = value
-        jax.config.update("jax_disable_most_optimizations", without)
-        jax.clear_caches()
+    items.sort(key=lambda item: places.get(item.path.name, len(places)))
 
 
 # Processes that tests start, and workers that those start, import this tree, whatever is installed.

@@ -17,7 +17,6 @@ from primordia.config import load
 from primordia.experiments.file import read
 from tests import commands
 
-pytestmark = pytest.mark.usefixtures("optimised")  # some runs are long
 HERE = Path(__file__).parent.parent
 TEMPLATES = HERE / "docs" / "templates"
 PAGES = [

@@ -13,7 +13,6 @@ from primordia.cli.commands import commands
 from primordia.cli.flags import take_limits
 from tests.commands import HERE, here
 
-pytestmark = pytest.mark.usefixtures("optimised")
 HOME = HERE / "docs" / "gallery"
 
 

@@ -1,7 +1,4 @@
-"""Golden digests: small runs of all tasks live as they did when `goldens.json` was made.
-
-Their bits are the same in code that is not optimised; those in `test_goldens_of_laws` are not.
-"""
+"""Golden digests: small runs of all tasks live as they did when `goldens.json` was made."""
 
 import json
 from collections.abc import Iterable

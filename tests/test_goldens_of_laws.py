@@ -1,4 +1,4 @@
-"""Golden digests of the law's parts, in code that is optimised as users' code is."""
+"""Golden digests of the law's parts."""
 
 from pathlib import Path
 
@@ -6,9 +6,6 @@ import pytest
 
 from tests.goldens import others, placements
 from tests.test_goldens import assert_lives_as_it_did, marked
-
-pytestmark = pytest.mark.usefixtures("optimised")
-
 
 SHOWN = {"blind-torus4-founder", "blind-torus8", "empty-only-ring", "empty-only-well-mixed-saturated",
          "replacing-well-mixed-worlds", "schedules", "ratchets-blocks", "ancestors",

@@ -1,26 +1,86 @@
-"""Products that are rounded before a sum."""
+"""Compiled code rounds each product before it is added, whatever the compiler."""
+
+from typing import Any
 
 import jax
+import jax.numpy as jnp
 import numpy as np
-import pytest
+from jax import lax
 
-from primordia.rounding import rounded_product
-
-PRODUCT = jax.jit(rounded_product)
-SUM = jax.jit(lambda a, b, c: rounded_product(a, b) + c)
+from primordia.compiled import jit
 
 
-@pytest.mark.usefixtures("optimised")
-def test_compiled_code_rounds_a_product_before_a_sum() -> None:
-    """The bits are those of NumPy, for both signs, zero and infinity. NaN gives NaN."""
-    rng = np.random.default_rng(1)
-    a, b, c = rng.normal(size=(3, 64)).astype(np.float32)
-    b = np.abs(b)
-    a[:6] = [0, -0.0, np.inf, -np.inf, np.nan, 1e-44]
-    b[:6] = [3, 3, 2, 2, 1, 1]
-    b[6:8] = [0, np.inf]
-    assert np.isnan(PRODUCT(a, b)[4])
-    # The bits of NaN are not compared, and XLA rounds the smallest numbers to zero.
-    a, b, c = (np.delete(each, [4, 5]) for each in (a, b, c))
-    assert np.asarray(PRODUCT(a, b)).tobytes() == (a * b).tobytes()
-    assert np.asarray(SUM(a, b, c)).tobytes() == (a * b + c).tobytes()
+def test_loops_branches_and_powers_are_those_of_numpy() -> None:
+    """A power is a product of squares, smallest first."""
+    a = np.float32([0.3, -1.7, 2.9])
+    rows = np.float32([[0.1, 0.2, 0.3], [1.1, -1.2, 1.3], [7.0, 8.0, 9.0]])
+
+    def powers(a: Any, rows: Any) -> Any:
+        def step(x: Any, row: Any) -> Any:
+            return x * row + 1, x - row
+
+        last, passed = lax.scan(step, a, rows, reverse=True)
+        grown = lax.while_loop(lambda x: x[0] < 9, lambda x: x * x + a * a, a + 1)
+        return [lax.integer_pow(a, y) for y in (0, 1, 2, 5, 6, -1, -3)], last, passed, grown
+
+    found, last, passed, grown = jit(powers)(a, rows)
+    two, one = a * a, np.float32(1)
+    four = two * two
+    expected = [a * 0 + 1, a, two, a * four, two * four, one / a, one / (a * two)]
+    for power, wanted in zip(found, expected, strict=True):
+        np.testing.assert_array_equal(power, wanted)
+    x, seen = a, []
+    for row in rows[::-1]:
+        x, before = x * row + 1, x - row
+        seen.append(before)
+    np.testing.assert_array_equal(last, x)
+    np.testing.assert_array_equal(passed, seen[::-1])
+    x = a + 1
+    while x[0] < 9:
+        x = x * x + two
+    np.testing.assert_array_equal(grown, x)
+
+
+def test_every_product_is_rounded_before_it_is_added() -> None:
+    rng = np.random.default_rng(0)
+    a, b, c = (rng.normal(size=500).astype(np.float32) for _ in range(3))
+
+    def sums(a: Any, b: Any, c: Any) -> Any:
+        branch = lax.cond(c[0] > 9, lambda: a, lambda: a * b + c)
+        loop = lax.fori_loop(0, 3, lambda i, x: x * b + c, a)
+        scanned = lax.scan(lambda x, y: (x * y + c, x), a, jnp.stack([b, a]))
+        own = jax.custom_jvp(lambda a, b: a * b + c)
+        own.defjvp(lambda given, change: (own(*given), change[0]))
+        again = jax.checkpoint(lambda a: a * b)(a) + c
+        dots = lax.dot_general(a[:, None], b[:, None], (((1,), (1,)), ((0,), (0,)))) + c
+        negative = c - a * b
+        return (
+            branch,
+            loop,
+            *scanned,
+            a**3 + c,
+            jax.jit(jnp.square)(a) - c,
+            own(a, b),
+            again,
+            dots,
+            negative,
+        )
+
+    found = jit(sums)(a, b, c)
+    once = a * b + c
+    thrice = (once * b + c) * b + c
+    expected = once, thrice, once * a + c, np.stack([a, once]), a * (a * a) + c, a * a - c
+    expected = *expected, once, once, once, c - a * b
+    for one, other in zip(found, expected, strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_rounding_changes_no_other_number() -> None:
+    """Signs of zero, infinities, NaN and whole numbers are those of the product alone."""
+    a = np.float32([0, -0.0, np.inf, -np.inf, np.nan, 1e-44, 3e38])
+    b, whole = np.float32([3, 3, 2, -2, 1, 1e-3, 10]), np.int32([2**20, -5, 7])
+    product, squares = jit(lambda a, b, whole: (a * b, whole * whole + 1))(a, b, whole)
+    plain = np.asarray(jax.jit(jnp.multiply)(a, b))
+    np.testing.assert_array_equal(product, plain)
+    np.testing.assert_array_equal(np.signbit(product)[:2], [False, True])
+    np.testing.assert_array_equal(squares, whole * whole + 1)

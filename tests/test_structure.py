@@ -11,8 +11,9 @@ SOURCE = Path(__file__).parent.parent / "src" / "primordia"
 
 LAYERS = [
     {"errors", "interrupts", "own_code", "printable"},
-    {"cores"},
-    {"compiled", "device", "files", "random", "rounding", "tasks"},
+    {"cores", "jaxprs"},
+    {"rounding"},
+    {"compiled", "device", "files", "random", "tasks"},
     {"settings"},
     {"brains", "pool"},
     {"habitats", "mutations"},

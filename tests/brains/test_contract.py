@@ -3,7 +3,6 @@
 import os
 import subprocess
 import sys
-from functools import partial
 from hashlib import sha256
 from typing import Any
 
@@ -12,6 +11,7 @@ import numpy as np
 import pytest
 
 from primordia.brains.contract import KNOWN, Brain, find
+from primordia.compiled import shared
 from primordia.errors import InputError
 from primordia.settings.making import make
 from primordia.testing import check_brain
@@ -30,7 +30,6 @@ TABLES: dict[str, dict[str, Any]] = {
     "linear, biases": {"kind": "linear", "biases": True},
     "not ours": {"kind": "tests.toys:Sliding"},
 }
-pytestmark = pytest.mark.usefixtures("optimised")
 
 
 def build(table: dict[str, Any]) -> Brain:
@@ -57,13 +56,11 @@ def minds(brain: Brain) -> tuple[dict[str, Any], Any, Any]:
     return genome, memory, normal(TICKS, MOST, SENSES)
 
 
-@partial(jax.jit, static_argnums=0)
 def lived(brain: Brain, genome: Any, memory: Any, senses: Any) -> tuple:
     """Think for some ticks in one compiled loop; return memory (N, M) and outputs (T, N, A)."""
     return jax.lax.scan(lambda memory, seen: brain(genome, memory, seen), memory, senses)
 
 
-@partial(jax.jit, static_argnums=0)
 def thought(brain: Brain, genome: Any, memory: Any, senses: Any) -> tuple:
     """Think once, compiled; return memory (N, M) and output (N, A)."""
     return brain(genome, memory, senses)
@@ -77,7 +74,7 @@ def test_a_brain_keeps_the_contract(brain: Brain) -> None:
 @each_brain
 def test_an_organism_thinks_the_same_among_any_number(brain: Brain) -> None:
     genome, memory, senses = minds(brain)
-    think = partial(thought, brain)
+    think = shared(thought, brain)
     after, output = (np.asarray(each) for each in think(genome, memory, senses[0]))
     shuffled = np.random.default_rng(3).permutation(MOST)
     for some in (shuffled, np.arange(1), np.arange(2), shuffled[:31], shuffled[:32]):
@@ -96,8 +93,8 @@ def test_a_brain_thinks_the_same_inside_a_loop_and_outside(
     genome, memory, senses = minds(brain)
     genome = {name: block[:count] for name, block in genome.items()}
     memory, senses = memory[:count], senses[:, :count]
-    last, outputs = (np.asarray(each) for each in lived(brain, genome, memory, senses))
-    think = partial(thought, brain) if compiled else brain
+    last, outputs = (np.asarray(each) for each in shared(lived, brain)(genome, memory, senses))
+    think = shared(thought, brain) if compiled else brain
     for tick in range(TICKS):
         memory, output = think(genome, memory, senses[tick])
         np.testing.assert_array_equal(output, outputs[tick])
@@ -107,7 +104,7 @@ def test_a_brain_thinks_the_same_inside_a_loop_and_outside(
 @each_brain
 def test_an_organism_that_is_not_finite_changes_no_other(brain: Brain) -> None:
     genome, memory, senses = minds(brain)
-    think = partial(thought, brain)
+    think = shared(thought, brain)
     whole = think(genome, memory, senses[0])
     broken = {name: block.copy() for name, block in genome.items()}
     for block in broken.values():
@@ -142,7 +139,7 @@ def fingerprint() -> str:
     """Return a hash of what all brains think; the processes below print it."""
     digest = sha256()
     for brain in BRAINS.values():
-        for each in jax.tree.leaves(lived(brain, *minds(brain))):
+        for each in jax.tree.leaves(shared(lived, brain)(*minds(brain))):
             digest.update(np.asarray(each).tobytes())
     return digest.hexdigest()
 

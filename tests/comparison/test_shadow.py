@@ -27,11 +27,9 @@ from tests.commands import complains, here
 from tests.synthetic import worlds_of
 from tests.worlds import MEADOW, config
 
-pytestmark = pytest.mark.usefixtures("optimised")  # a pedigree is thousands of small calls
-
 
 @pytest.fixture(scope="module")
-def poles(tmp_path_factory: pytest.TempPathFactory, optimised: None) -> dict[str, primordia.Run]:
+def poles(tmp_path_factory: pytest.TempPathFactory) -> dict[str, primordia.Run]:
     """Make six worlds with heredity, and six without."""
     folder, settings = tmp_path_factory.mktemp("poles"), {"seeds": 6, "stop": {"ticks": 12_000}}
     return {

@@ -2,11 +2,10 @@
 
 from typing import ClassVar
 
-import jax
 import numpy as np
 from jax import Array
 
-from primordia.habitats.bodies import fresh
+from primordia.compiled import jit
 from primordia.law.events import batch
 from primordia.settings.tracing import COUNT
 from tests.toys import Meadow, Slope
@@ -24,7 +23,7 @@ class Costly(Meadow):
 
 
 def test_bodies_are_never_made_for_all_cells() -> None:
-    """On a CPU bodies are made one by one, elsewhere in batches; both are traced, and so is a check."""
+    """Bodies are made in batches; one body is made for all empty cells, and some for a check."""
     cells = 1024
     costly = {"name": f"{__name__}:Costly"}
     lived = Lived(config(MEADOW, habitat=costly, cells=cells, genesis="fill"), 5)
@@ -36,7 +35,7 @@ def test_bodies_are_never_made_for_all_cells() -> None:
 def test_a_body_does_not_depend_on_the_number_of_births_in_its_tick() -> None:
     """A reset of many bodies at once would be rounded in another way; births do not depend on it."""
     words = np.random.default_rng(3).integers(0, 2**32, (64, 2), np.uint32)
-    born = jax.jit(lambda words: fresh(Slope(), words))
+    born = jit(Slope().reset)
     together = np.asarray(born(words))
     for count in (1, 2, 3, 8):
         some = [np.asarray(born(words[i : i + count])) for i in range(0, 48, count)]

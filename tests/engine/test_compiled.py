@@ -114,9 +114,9 @@ def test_only_the_memory_of_named_arguments_is_reused(fixed: tuple[Any, ...]) ->
     code: Any = shared(_added, *fixed, donate=(1,))
     plain: Any = shared(_added, *fixed)
     x, y = np.zeros(3, np.float32), np.ones(3, np.float32)
-    donated = [each.donated for each in code.lower(x, y).args_info[0]]
-    assert donated == [False, True]
-    assert not any(each.donated for each in plain.lower(x, y).args_info[0])
+    donated = [each.donated for each in code.func.lower(*code.args, x, y).args_info[0]]
+    assert donated == [False, False, True]
+    assert not any(each.donated for each in plain.func.lower(*plain.args, x, y).args_info[0])
 
 
 def _added(_: Any, x: jax.Array, y: jax.Array) -> jax.Array:

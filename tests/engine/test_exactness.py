@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from primordia.brains.contract import KNOWN, find
+from primordia.compiled import jit
 from primordia.habitats.cartpole.habitat import CartPole
 from tests.commands import AFRESH, environment
 from tests.toys import Mill
 from tests.worlds import MILL, Lived, config
 
-pytestmark = pytest.mark.usefixtures("optimised")
 CARTPOLE = {"seed": 5, "cells": 32}
 
 
@@ -111,7 +111,7 @@ def test_brains_and_bodies_do_not_depend_on_their_number(kind: str, habitat) -> 
     genome = layout.split(rng.normal(size=(1024, layout.length)).astype(np.float32))
     words = rng.integers(0, 2**32, (1024, habitat.words), dtype=np.uint32)
 
-    @jax.jit
+    @jit
     def lives(genome: dict, words: np.ndarray) -> tuple:
         def tick(carry: tuple, _: None) -> tuple:
             memory, bodies = carry
@@ -125,7 +125,7 @@ def test_brains_and_bodies_do_not_depend_on_their_number(kind: str, habitat) -> 
         return jax.lax.scan(tick, start, None, length=50)[0]
 
     memory, bodies = lives(genome, words)
-    for n in (1, 2, 31, 32):
+    for n in (1, 2, 7, 31, 32, 1000):
         few_memory, few_bodies = lives({k: v[:n] for k, v in genome.items()}, words[:n])
         np.testing.assert_array_equal(few_memory, memory[:n])
         np.testing.assert_array_equal(few_bodies, bodies[:n])

@@ -22,7 +22,7 @@ USED = {
 """How many of so many devices a run takes: as many as divide its worlds."""
 
 
-pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("optimised")]
+pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +31,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def told(folder: Path, optimised: None) -> dict[int, dict[str, Any]]:
+def told(folder: Path) -> dict[int, dict[str, Any]]:
     """Return what processes with different numbers of devices print."""
     variables, command = commands.environment(), [sys.executable, "-m"]
     flags, results = variables.get("XLA_FLAGS", ""), {}

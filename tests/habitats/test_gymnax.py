@@ -11,7 +11,7 @@ from primordia.config import validated
 from primordia.errors import InputError
 from primordia.habitats.contract import Ability, Continuous, Discrete
 from primordia.habitats.gymnax.habitat import Gymnax, _kind, _parts
-from primordia.habitats.gymnax.rounded import uses_first
+from primordia.jaxprs import uses_first
 from primordia.testing import check_habitat
 
 WORDS = np.arange(8, dtype=np.uint32).reshape(4, 2)
@@ -38,7 +38,7 @@ def lived(habitat: Gymnax, ticks: int, action: Any = STILL) -> tuple[Any, list[A
 
 
 @pytest.mark.parametrize("name", ["Walk", pytest.param("Choice", marks=pytest.mark.slow)])
-def test_an_environment_of_ones_own_keeps_the_contract(name: str, optimised: None) -> None:
+def test_an_environment_of_ones_own_keeps_the_contract(name: str) -> None:
     check_habitat(Gymnax(env=f"tests.walks:{name}", food="reward", squash=True))
 
 

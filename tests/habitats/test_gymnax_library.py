@@ -40,19 +40,19 @@ def test_a_life_is_what_the_library_computes(name: str) -> None:
             np.testing.assert_array_equal(outcome.food, reward)
 
 
-def test_a_body_in_pendulum_has_the_same_bits_in_all_programs(optimised: None) -> None:
+def test_a_body_in_pendulum_has_the_same_bits_in_all_programs() -> None:
     check_habitat(Gymnax(env="Pendulum-v1", food="reward"))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [*CLASSIC, *MINATAR])
-def test_bits_depend_on_words_and_actions_alone(name: str, optimised: None) -> None:
+def test_bits_depend_on_words_and_actions_alone(name: str) -> None:
     check_habitat(Gymnax(env=name, food="reward"))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["Craftax-Classic-Symbolic-v1"])
-def test_craftax_keeps_the_contract(name: str, optimised: None) -> None:
+def test_craftax_keeps_the_contract(name: str) -> None:
     pytest.importorskip("craftax")
     check_habitat(Gymnax(env=name, food="reward"))
 
@@ -118,7 +118,7 @@ def test_a_life_is_drawn_by_its_library_or_as_it_is_sensed(
 
 
 @pytest.mark.slow
-def test_a_task_of_mujoco_playground_keeps_the_contract(optimised: None) -> None:
+def test_a_task_of_mujoco_playground_keeps_the_contract() -> None:
     needs = "pip install 'primordia[playground]'"
     pytest.importorskip("mujoco_playground", reason=needs, exc_type=ImportError)
     habitat = Gymnax(env="playground:PendulumSwingup", food="max(reward, 0)")

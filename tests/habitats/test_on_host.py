@@ -6,8 +6,8 @@ import jax
 import numpy as np
 import pytest
 
-from primordia.compiled import shared
-from primordia.habitats.bodies import fresh, not_finite
+from primordia.compiled import jit
+from primordia.habitats.bodies import not_finite
 from primordia.habitats.cartpole.habitat import CartPole
 from primordia.habitats.contract import Ability, Outcome
 from primordia.habitats.on_host import OnHost
@@ -26,7 +26,7 @@ def opened(inner: Any = None, cells: int = 8) -> OnHost:
 def test_it_steps_as_the_jax_habitat_does() -> None:
     inner, habitat = CartPole(), opened()
     senses = habitat.reset(ALL, WORDS)
-    bodies, step = shared(fresh, inner)(WORDS), jax.jit(inner.step)
+    bodies, step = jit(inner.reset)(WORDS), jit(inner.step)
     for tick in range(60):
         np.testing.assert_array_equal(senses, inner.sense(bodies))
         action = (WORDS[:, 0] >> np.uint32(tick % 32) & np.uint32(1)).astype(np.int32)

@@ -1,4 +1,4 @@
-"""Bodies at birth, in code that is optimised as users' code is."""
+"""Bodies at birth."""
 
 from pathlib import Path
 
@@ -9,8 +9,6 @@ from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.organism.test_life import assert_ends_as_recorded
 from tests.worlds import MEADOW, config
-
-pytestmark = pytest.mark.usefixtures("optimised")
 
 
 @pytest.mark.parametrize("cells", [32, 1024])

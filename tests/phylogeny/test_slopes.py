@@ -53,7 +53,7 @@ SIZE, BIRTHS = 40, 1600
 
 
 @pytest.fixture
-def quick(optimised: None, monkeypatch: pytest.MonkeyPatch) -> None:
+def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """Draw fewer shadows of each line."""
     monkeypatch.setattr("primordia.phylogeny.slopes.MOST", 200)
 

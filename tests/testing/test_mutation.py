@@ -14,7 +14,6 @@ from primordia.mutations.contract import Change, Draws, Family, Mutation
 from primordia.mutations.gaussian import Block, Gaussian
 from primordia.mutations.noise import standard_noise
 from primordia.random.keys import Purpose
-from primordia.rounding import rounded_product
 from primordia.settings.base import Rate
 from primordia.testing import ContractError, check_mutation
 from tests.testing.impure import counted
@@ -46,7 +45,7 @@ class Steady(Mutation):
     def inherit(self, layout: Layout, family: Family) -> tuple[Array, Array]:
         parents, _, rates, draws = family
         noise = standard_noise(draws.streams[Purpose.NOISE], draws.cell, layout.length)
-        change = rounded_product(noise, self.size(rates)[:, None])
+        change = noise * self.size(rates)[:, None]
         return self.added(parents, change), jnp.ones(len(parents), bool)
 
     def size(self, rates: Mapping[str, Array]) -> Array:
@@ -193,7 +192,7 @@ class Few(Steady):
         return super().founders(layout, draws)[:, 1:]
 
 
-@pytest.mark.parametrize("mutation", [Steady(), Counted(), Rateless()])
+@pytest.mark.parametrize("mutation", [Steady(), Counted(), Rateless(), Contracted()])
 def test_the_mutations_without_these_faults(mutation: Mutation) -> None:
     check_mutation(mutation)
 
@@ -204,10 +203,6 @@ def test_the_mutations_without_these_faults(mutation: Mutation) -> None:
         (Sociable(), "when 1 instead of 32 are born together; compute each birth alone"),
         (Lazy(), "instead of 32 are born together"),
         (Deaf(), "the same children for all rates; read rates from `rates`"),
-        (
-            Contracted(),
-            "Contracted gives different bits .* when compiled; .* rounding.rounded_product",
-        ),
         (Random(), "when it is traced again, .*; draw only from `draws`"),
         (
             Liar(),

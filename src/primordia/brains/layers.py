@@ -9,7 +9,6 @@ from jax import Array, lax
 from pydantic import Field
 
 from primordia.brains.layout import Shape
-from primordia.rounding import rounded_product
 
 Hidden: TypeAlias = Annotated[int, Field(ge=1, le=4096, description="neurons in the hidden layer")]
 Biases: TypeAlias = Annotated[
@@ -55,8 +54,5 @@ def gate(x: Array) -> Array:
 
 
 def mix(share: Array, a: Array, b: Array) -> Array:
-    """Return `share a + (1 - share) b`, share from 0 to 1, with each product rounded separately.
-
-    Without the separate rounding, five of six memories differed between compiled and uncompiled ticks.
-    """
-    return rounded_product(a, share) + rounded_product(b, 1 - share)
+    """Return `share a + (1 - share) b`, share from 0 to 1."""
+    return share * a + (1 - share) * b

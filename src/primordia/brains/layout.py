@@ -70,7 +70,10 @@ class Layout:
 
     def per_weight(self, per_block: Array) -> Array:
         """Repeat the value of each block for each of its weights: (K, B) -> (K, P)."""
-        return jnp.repeat(per_block, self.sizes, axis=1, total_repeat_length=self.length)
+        # With `jnp.repeat` a world with many births is a quarter slower.
+        columns = jnp.split(per_block, len(self.sizes), axis=1)
+        repeated = zip(columns, self.sizes, strict=True)
+        return jnp.concatenate([jnp.repeat(each, size, axis=1) for each, size in repeated], axis=1)
 
     def split(self, flat: Arrays) -> dict[str, Arrays]:
         """Cut flat genomes (..., P) into blocks (..., *shape), in NumPy or JAX like the input."""

@@ -6,7 +6,7 @@ from jax import Array, lax
 
 from primordia.compiled import shared
 from primordia.engine.state import Limits, State, filled, named_leaves, running, ticks_left
-from primordia.habitats.bodies import fresh, insert_bodies, placeholder_bodies, select_bodies
+from primordia.habitats.bodies import insert_bodies, placeholder_bodies, select_bodies
 from primordia.habitats.contract import Bodies, JaxHabitat
 from primordia.law import events as log
 from primordia.law.events import Events
@@ -117,6 +117,6 @@ def _embody(law: Law, habitat: JaxHabitat, world: World, bodies: Bodies, newborn
     def one_batch(cells: Array, valid: Array, carry: tuple[Bodies]) -> tuple[Bodies]:
         words = body_words(key.take(cells // law.cells), cells % law.cells, habitat.words)
         where = jnp.where(valid, cells, len(newborn))
-        return (insert_bodies(carry[0], where, fresh(habitat, words)),)
+        return (insert_bodies(carry[0], where, habitat.reset(words)),)
 
     return log.for_each(newborn, (bodies,), one_batch)[0]

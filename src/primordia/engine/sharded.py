@@ -28,6 +28,7 @@ from primordia.law.events import BIRTHS, DEATHS, Events, Rows, sample_columns
 from primordia.law.genesis import empty_worlds
 from primordia.law.law import Law
 from primordia.random.wide import Wide, wide
+from primordia.rounding import rounded
 
 AXIS = "devices"
 SPLIT: Any = PartitionSpec(AXIS)
@@ -136,7 +137,9 @@ def _advance(
         return state, *_of_device((events, done))
 
     limited = Limits(SPLIT, SPLIT, SAME)
-    return _on_each(mesh, on_one, SPLIT, SPLIT, limited, SAME)(state, events, limits, ticks)
+    on_all = _on_each(mesh, rounded(on_one), SAME, SPLIT, SPLIT, limited, SAME)
+    zero = (ticks >> np.int32(31)).astype(jnp.uint32)  # the compiler knows no sign of an argument
+    return on_all(zero, state, events, limits, ticks)
 
 
 _of_device = partial(jax.tree.map, lambda leaf: leaf[None])

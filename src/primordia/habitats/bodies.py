@@ -1,35 +1,17 @@
-"""Bodies in JAX: made from random words, inserted into cells, and checked for finite coordinates."""
-
-from functools import partial
+"""Bodies in JAX: inserted into cells, selected, and checked for finite coordinates."""
 
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jax import Array, lax
+from jax import Array
 
 from primordia.compiled import shared
 from primordia.habitats.contract import Bodies, JaxHabitat
 
 
-def fresh(habitat: JaxHabitat, words: Array) -> Bodies:
-    """Return fresh bodies from random words uint32 (N, words). Every caller must compile this
-    function.
-
-    In uncompiled code a product and a sum are rounded separately; compiled code may round only
-    once, after the sum. On a CPU the rounding may also depend on N, since the code for a single
-    body uses no vector instructions. So on a CPU each body is made alone, and its bits do not
-    depend on the number of births.
-    """
-
-    def fresh_body(words: Array) -> Bodies:
-        return jax.tree.map(lambda leaf: leaf[0], habitat.reset(words[None]))
-
-    return lax.platform_dependent(words, cpu=partial(lax.map, fresh_body), default=habitat.reset)
-
-
 def placeholder_bodies(habitat: JaxHabitat, cells: int) -> Bodies:
     """Return the bodies of cells before the first birth: copies of one body that is made from zeros."""
-    body = shared(fresh, habitat)(np.zeros((1, habitat.words), np.uint32))
+    body = shared(type(habitat).reset, habitat)(np.zeros((1, habitat.words), np.uint32))
     return jax.tree.map(lambda leaf: jnp.repeat(leaf, cells, axis=0), body)
 
 

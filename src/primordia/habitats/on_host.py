@@ -9,7 +9,6 @@ from jax import Array
 
 from primordia.compiled import shared
 from primordia.habitats.bodies import (
-    fresh,
     insert_bodies,
     not_finite,
     placeholder_bodies,
@@ -42,9 +41,6 @@ class OnHost(HostHabitat):
         self.senses_size, self.action, self.words = inner.senses_size, inner.action, inner.words
         self.rate, self.versions = inner.rate, inner.versions
         self._embody, self._step = shared(_embody, inner), shared(_step, inner)
-        # A separate call: senses that are compiled together with a step might be rounded
-        # differently.
-        self._sense = shared(type(inner).sense, inner)
 
     def open(self, cells: int, watched: bool = False) -> None:
         """Allocate the bodies."""
@@ -58,13 +54,13 @@ class OnHost(HostHabitat):
         padding = (1 << (count - 1).bit_length()) - count
         padded_cells = np.pad(cells, (0, padding), constant_values=self._cells)
         padded_words = np.pad(words, ((0, padding), (0, 0)))
-        self._bodies, newborn = self._embody(self._bodies, padded_cells, padded_words)
-        return np.array(self._sense(newborn))[:count]
+        self._bodies, senses = self._embody(self._bodies, padded_cells, padded_words)
+        return np.array(senses)[:count]
 
     def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
         """Step only the bodies of living cells; see `HostHabitat.step`."""
-        self._bodies, outcome = self._step(self._bodies, action, alive)
-        return np.array(self._sense(self._bodies)), outcome
+        self._bodies, senses, outcome = self._step(self._bodies, action, alive)
+        return np.array(senses), outcome
 
     def seen(self) -> Bodies:
         """Return the bodies as NumPy arrays."""
@@ -95,17 +91,19 @@ class OnHost(HostHabitat):
 
 def _embody(
     habitat: JaxHabitat, bodies: Bodies, cells: Array, words: Array
-) -> tuple[Bodies, Bodies]:
-    """Insert fresh bodies into cells (K,), except those out of range; return all, and the fresh ones."""
-    newborn = fresh(habitat, words)
-    return insert_bodies(bodies, cells, newborn), newborn
+) -> tuple[Bodies, Array]:
+    """Insert fresh bodies into cells (K,), except those out of range; return all, and what the fresh
+    ones sense."""
+    newborn = habitat.reset(words)
+    return insert_bodies(bodies, cells, newborn), habitat.sense(newborn)
 
 
 def _step(
     habitat: JaxHabitat, bodies: Bodies, action: Array, alive: Array
-) -> tuple[Bodies, Outcome]:
-    """Step the bodies of the cells alive; a body that is no longer finite is a fault."""
+) -> tuple[Bodies, Array, Outcome]:
+    """Step the bodies of the cells alive, and sense all; a body that is no longer finite is a fault."""
     after, outcome = habitat.step(bodies, action)
     fault = not_finite(after) if outcome.fault is None else not_finite(after) | outcome.fault
     fault = jnp.broadcast_to(fault, alive.shape)
-    return select_bodies(alive, after, bodies), outcome._replace(fault=fault)
+    bodies = select_bodies(alive, after, bodies)
+    return bodies, habitat.sense(bodies), outcome._replace(fault=fault)

@@ -13,7 +13,6 @@ from primordia.mutations.contract import Change, Draws, Family, Moments, Mutatio
 from primordia.mutations.lengths import SHORTEST, length
 from primordia.mutations.noise import standard_noise
 from primordia.random.keys import Purpose, chance
-from primordia.rounding import rounded_product
 from primordia.settings.base import Rate
 
 STEPS = 7
@@ -104,7 +103,7 @@ class Calibrated(Mutation):
         parents, _, _, draws = family
         noise = standard_noise(draws.streams[Purpose.NOISE], draws.cell, layout.length)
         scale = self._scales(layout) * length(quarters)[:, None]
-        return parents + rounded_product(noise, scale)
+        return parents + noise * scale
 
     def _scales(self, layout: Layout) -> Array:
         """Return the standard deviation of each of a founder's weights, float32 (P,)."""

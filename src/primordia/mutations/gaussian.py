@@ -12,7 +12,6 @@ from primordia.mutations.blocks import FounderBlock, check_blocks, per_block
 from primordia.mutations.contract import Draws, Family, Mutation
 from primordia.mutations.noise import standard_noise
 from primordia.random.keys import Purpose, chance
-from primordia.rounding import rounded_product
 from primordia.settings.base import Rate
 
 BlockField: TypeAlias = Literal["probability", "scale", "founder_scale"]
@@ -76,7 +75,7 @@ class Gaussian(Mutation):
         """Add noise to the blocks that mutate; see `Mutation.inherit`."""
         parents, draws, mutates = family.parents, family.draws, self.mutating(layout, family)
         noise = standard_noise(draws.streams[Purpose.NOISE], draws.cell, layout.length)
-        noise = rounded_product(noise, layout.per_weight(self.noise_scale(layout, family)))
+        noise = noise * layout.per_weight(self.noise_scale(layout, family))
         children = jnp.where(layout.per_weight(mutates), parents + noise, parents)
         return children, mutates.any(axis=1)
 

@@ -1,7 +1,7 @@
 """Gaussian noise for weights, with the same bits on every device.
 
 Noise is read from the table of `random.gaussian`, with 16 random bits for each weight. A child's
-weight is one IEEE product (quantile x scale, `rounding.rounded_product`) and one IEEE sum.
+weight is one IEEE product (quantile x scale) and one IEEE sum; see `rounding`.
 """
 
 import jax.numpy as jnp

@@ -1,14 +1,14 @@
 """The check of brains."""
 
-import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array, lax
 
 from primordia.brains import checks
 from primordia.brains.contract import Brain, Genome
+from primordia.compiled import jit
 from primordia.random.trials import normal
-from primordia.testing.report import ROUNDED, advise, kept, need, same
+from primordia.testing.report import SUMMED, advise, kept, need, same
 from primordia.testing.trial import ALL, COUNTS, last
 
 TICKS = 6
@@ -29,7 +29,7 @@ def check_brain(brain: Brain, senses: int = 33, outputs: int = 5) -> None:
         checks.check_brain(brain, senses, outputs)
     genome, memory, seen = _minds(brain, senses, outputs)
     _keeps_its_arguments(brain, genome, memory, seen[0])
-    think = jax.jit(lambda *given: brain(*given))
+    think = jit(lambda *given: brain(*given))
     whole = think(genome, memory, seen[0])
     _depends_on_its_own_only(brain, whole, genome, memory, seen[0])
     for count in COUNTS:
@@ -39,12 +39,12 @@ def check_brain(brain: Brain, senses: int = 33, outputs: int = 5) -> None:
             " of (w * x).sum(-1)"
         )
         same(brain, last(whole, count), few, says, ALL - count)
-    same(brain, whole, brain(genome, memory, seen[0]), f"when compiled{ROUNDED}")
-    remembered, outputs_ = jax.jit(lambda *given: _thoughts(brain, *given))(genome, memory, seen)
+    same(brain, whole, brain(genome, memory, seen[0]), f"when compiled{SUMMED}")
+    remembered, outputs_ = jit(lambda *given: _thoughts(brain, *given))(genome, memory, seen)
     for tick in range(TICKS):
         memory, output = think(genome, memory, seen[tick])
-        same(brain, output, outputs_[tick], f"in a compiled loop{ROUNDED}")
-    same(brain, memory, remembered, f"in a compiled loop{ROUNDED}")
+        same(brain, output, outputs_[tick], f"in a compiled loop{SUMMED}")
+    same(brain, memory, remembered, f"in a compiled loop{SUMMED}")
     advise(brain)
 
 
@@ -80,7 +80,7 @@ def _depends_on_its_own_only(
     brain: Brain, whole: tuple, genome: Genome, memory: Array, seen: Array
 ) -> None:
     """Compare thoughts with those of a second trace, and of a batch with one broken genome."""
-    again = jax.jit(lambda *given: brain(*given))(genome, memory, seen)
+    again = jit(lambda *given: brain(*given))(genome, memory, seen)
     says = (
         "when it is traced again, so it depends on more than genome, memory and senses; keep no"
         " counters and no generators"
@@ -89,7 +89,7 @@ def _depends_on_its_own_only(
     broken = {name: np.array(block) for name, block in genome.items()}
     for block in broken.values():
         block[0] = np.nan
-    beside = jax.jit(lambda *given: brain(*given))(broken, memory, seen)
+    beside = jit(lambda *given: brain(*given))(broken, memory, seen)
     says = "when organism 0 has another genome; sum nothing over the first axis, that of organisms"
     same(brain, last(whole, ALL - 1), last(beside, ALL - 1), says, 1)
 

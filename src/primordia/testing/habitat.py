@@ -4,7 +4,7 @@ import jax
 import numpy as np
 from jax import Array, lax
 
-from primordia.habitats.bodies import fresh
+from primordia.compiled import jit
 from primordia.habitats.checks import check_arrays, check_properties
 from primordia.habitats.contract import (
     Ability,
@@ -15,7 +15,7 @@ from primordia.habitats.contract import (
 )
 from primordia.law.events import DEATHS
 from primordia.testing.lives import TICKS, Lives, Past
-from primordia.testing.report import ROUNDED, advise, kept, need
+from primordia.testing.report import SUMMED, advise, kept, need
 from primordia.testing.trial import ALL, COUNTS
 
 
@@ -90,12 +90,12 @@ def _abilities(habitat: AnyHabitat) -> None:
 def _in_a_loop(habitat: JaxHabitat, lives: Lives, expected: list[Past]) -> None:
     """Compare lives in two loops with separate traces, and lives that were stepped tick by tick."""
     one, other = (
-        jax.jit(lambda words, actions: _looped(habitat, words, actions))(lives.words, lives.actions)
+        jit(lambda words, actions: _looped(habitat, words, actions))(lives.words, lives.actions)
         for _ in range(2)
     )
     says = "when it is traced again, so it draws from more than `words`; keep no random generator in it"
     lives.compare(_pasts(one), _pasts(other), says)
-    says = f"in a compiled loop than when it is stepped tick by tick{ROUNDED}"
+    says = f"in a compiled loop than when it is stepped tick by tick{SUMMED}"
     lives.compare(expected, _pasts(one), says)
 
 
@@ -106,7 +106,7 @@ def _looped(habitat: JaxHabitat, words: Array, actions: Array) -> tuple[Array, A
         bodies, outcome = habitat.step(bodies, action)
         return bodies, (habitat.sense(bodies), outcome)
 
-    born = fresh(habitat, words)
+    born = habitat.reset(words)
     senses, outcomes = lax.scan(tick, born, actions)[1]
     return habitat.sense(born), senses, outcomes
 

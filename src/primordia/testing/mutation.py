@@ -10,6 +10,7 @@ import numpy as np
 from jax import Array, lax
 
 from primordia.brains.layout import Layout
+from primordia.compiled import jit
 from primordia.law.events import BIRTHS
 from primordia.mutations import checks
 from primordia.mutations.contract import PURPOSES, Change, Draws, Family, Mutation
@@ -17,7 +18,7 @@ from primordia.random.keys import streams
 from primordia.random.trials import normal, words
 from primordia.random.wide import wide
 from primordia.settings.fields import rates_of
-from primordia.testing.report import ROUNDED, ContractError, advise, kept, need, same, typed
+from primordia.testing.report import SUMMED, ContractError, advise, kept, need, same, typed
 from primordia.testing.trial import ALL, COUNTS, last
 
 LAYOUT = Layout((("input", (3, 7)), ("recurrent", (7, 7)), ("output", (2, 7))))
@@ -53,18 +54,18 @@ def check_mutation(mutation: Mutation, layout: Layout | None = None) -> None:
     family = _family(mutation, layout)
     _same_notes(mutation)
     births: Callable[[Family], Made] = partial(_births, mutation, layout)
-    made = jax.jit(births)(family)
+    made = jit(births)(family)
     says = (
         "when it is traced again, so a birth depends on more than parents, notes, rates and draws;"
         " draw only from `draws`"
     )
-    same(mutation, made, jax.jit(lambda each: births(each))(family), says)
+    same(mutation, made, jit(lambda each: births(each))(family), says)
     for count in COUNTS:
-        few = jax.jit(births)(family.take(np.s_[ALL - count :]))
+        few = jit(births)(family.take(np.s_[ALL - count :]))
         says = f"when {count} instead of {ALL} are born together; compute each birth alone"
         same(mutation, last(made, count), few, says, ALL - count)
-    same(mutation, made, births(family), f"when compiled{ROUNDED}")
-    same(mutation, made, jax.jit(partial(_one_by_one, births))(family), f"when rebuilt{ROUNDED}")
+    same(mutation, made, births(family), f"when compiled{SUMMED}")
+    same(mutation, made, jit(partial(_one_by_one, births))(family), f"when rebuilt{SUMMED}")
     _copies(mutation, layout, made, family)
     _obeys_rates(mutation, layout, family)
     advise(mutation)
@@ -159,7 +160,7 @@ def _same_notes(mutation: Mutation) -> None:
 def _copies(mutation: Mutation, layout: Layout, made: Made, family: Family) -> None:
     """Compare children that are copies with parents whose weights have arbitrary bits."""
     parents = jnp.asarray(words(1, ALL, layout.length).view(np.float32))
-    odd = jax.jit(partial(_births, mutation, layout))(family._replace(parents=parents))
+    odd = jit(partial(_births, mutation, layout))(family._replace(parents=parents))
     for children, of in ((made, family.parents), (odd, parents)):
         copy = ~np.asarray(children.mutated)[:, None]
         says = (
@@ -172,7 +173,7 @@ def _copies(mutation: Mutation, layout: Layout, made: Made, family: Family) -> N
 def _obeys_rates(mutation: Mutation, layout: Layout, family: Family) -> None:
     """Compare births under rates of 0 with births under rates of 1."""
     none, full = (
-        jax.jit(partial(_births, mutation, layout))(
+        jit(partial(_births, mutation, layout))(
             family._replace(rates={name: jnp.full(ALL, value) for name in family.rates})
         )
         for value in (np.float32(0), np.float32(1))

@@ -11,10 +11,9 @@ import numpy as np
 from primordia.errors import InputError
 from primordia.settings.tracing import Tracing
 
-ROUNDED = (
-    "; compilers differ in the rounding of products that are added, and in the order of sums: use"
-    " rounding.rounded_product for a product that is added to something, and brains.layers in"
-    " brains"
+SUMMED = (
+    "; compilers sum in different orders: use brains.layers in brains, and elsewhere add single"
+    " numbers, not axes"
 )
 
 

@@ -8,6 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array, lax
 
+from primordia.compiled import shared
 from primordia.habitats.contract import Discrete
 from primordia.habitats.gymnax.habitat import Body, Gymnax
 from primordia.random import trials
@@ -49,9 +50,7 @@ class _Seen(NamedTuple):
 def measure(habitat: Gymnax) -> Measured:
     """Let bodies act at random, and trace the environment's functions twice."""
     words = trials.words(0, BODIES, habitat.words)
-    seen = jax.tree.map(
-        np.asarray, jax.jit(_lived, static_argnums=0)(habitat, words, _actions(habitat))
-    )
+    seen = jax.tree.map(np.asarray, shared(_lived, habitat)(words, _actions(habitat)))
     wrong = {
         "an observation is not finite": not seen.finite.all(),
         "an observation is outside the declared space": not seen.inside.all(),

@@ -21,9 +21,10 @@ from primordia.habitats.conditions import Expression, Names
 from primordia.habitats.contract import Continuous, Discrete, JaxHabitat, Outcome
 from primordia.habitats.gymnax import libraries, simulator
 from primordia.habitats.gymnax.packed import Packed, pack
-from primordia.habitats.gymnax.rounded import rounded, uses_first
 from primordia.habitats.gymnax.simulator import Simulator, Step
 from primordia.habitats.gymnax.spaces import Actions, Senses, flattened
+from primordia.habitats.gymnax.sums import ordered
+from primordia.jaxprs import uses_first
 from primordia.random.keys import encrypt
 from primordia.random.wide import Wide, zero
 from primordia.settings.base import Settings
@@ -137,7 +138,7 @@ class Gymnax(JaxHabitat, Settings):
     def reset(self, words: Array) -> Body:
         """Return bodies from words uint32 (N, 2)."""
         root, age = Wide(words[:, 0], words[:, 1]), zero(words.shape[:1])
-        return Body(self._mapped(self._birth, root, _key(root, age)), root, age)
+        return Body(self._mapped(self._birth, _key(root, age)), root, age)
 
     def sense(self, bodies: Body) -> Array:
         """Return what bodies sense, float32 (N, senses_size)."""
@@ -156,7 +157,7 @@ class Gymnax(JaxHabitat, Settings):
         one = Wide(jnp.uint32(0), jnp.uint32(1))
         age = bodies.age + one if self._draws else bodies.age
         key = _key(bodies.root, age)
-        packed, values = self._mapped(self._tick, bodies.root, key, bodies.packed, action)
+        packed, values = self._mapped(self._tick, key, bodies.packed, action)
         return Body(packed, bodies.root, age), values
 
     @cached_property
@@ -171,13 +172,10 @@ class Gymnax(JaxHabitat, Settings):
             packed = jax.eval_shape(self._birth, simulator.KEY)
             return uses_first(self._tick, simulator.KEY, packed, output)
 
-    def _mapped(self, function: Callable, root: Wide, *arguments: Any) -> Any:
-        """Map a function of one body, with each product rounded."""
-        # The product of two neighbours is even, so this is zero; compilers do not know it.
-        unknown_zero = root.lo * (root.lo + np.uint32(1)) & np.uint32(1)
+    def _mapped(self, function: Callable, *arguments: Any) -> Any:
+        """Map a function of one body, with each sum in an order of its own."""
         with simulator.traced():
-            mapped: Callable = jax.vmap(lambda unknown, *each: rounded(function, unknown)(*each))
-            return mapped(unknown_zero, *arguments)
+            return jax.vmap(ordered(function))(*arguments)
 
     def _birth(self, key: Array) -> Packed:
         """Return one body's senses and state at birth."""

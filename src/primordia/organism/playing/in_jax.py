@@ -10,7 +10,6 @@ import numpy as np
 from jax import Array, lax
 
 from primordia.compiled import shared
-from primordia.habitats.bodies import fresh
 from primordia.habitats.contract import Bodies, JaxHabitat
 from primordia.law.law import Law
 from primordia.law.life import Vitals, judge
@@ -82,7 +81,7 @@ def _opened(
 ) -> _Table:
     """Return the table at the start of `count` games; further games are padding."""
     mind, memory, vitals, words = shared(begun, law, habitat.words)(seated)
-    bodies = shared(fresh, habitat)(words)
+    bodies = shared(type(habitat).reset, habitat)(words)
     first = None if frozen is None else shared(type(habitat).sense, habitat)(bodies)
     alive = np.arange(len(seated.genomes)) < count
     return _Table(mind, seated.rates, frozen, first, bodies, memory, vitals, jnp.asarray(alive))

@@ -7,7 +7,6 @@ from jax import Array, lax
 
 from primordia.compiled import shared
 from primordia.engine.state import named_leaves
-from primordia.habitats.bodies import fresh
 from primordia.habitats.contract import Bodies, JaxHabitat
 from primordia.law.law import Law
 from primordia.law.life import judge
@@ -29,7 +28,7 @@ class LifeInJax:
 
     def embody(self, words: Array) -> Bodies:
         """Return a fresh body from random words uint32 (1, words)."""
-        return shared(fresh, self._habitat)(words)
+        return shared(type(self._habitat).reset, self._habitat)(words)
 
     def restore(self, stored: dict[str, np.ndarray]) -> Bodies:
         """Return the body, (1, ...) each, from a checkpoint's arrays whose names begin with `bodies`."""
