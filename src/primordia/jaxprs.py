@@ -20,20 +20,17 @@ Rule: TypeAlias = Callable[[JaxprEqn, list[Any]], Array]
 FLOAT32 = jnp.dtype(jnp.float32)
 
 
-def rewritten(
-    function: Callable, rules: Mapping[str, Rule], kept: Callable[[Jaxpr], set] = lambda _: set()
-) -> Callable:
+def rewritten(function: Callable, rules: Mapping[str, Rule]) -> Callable:
     """Return a function of trees of arrays with replaced operations, in loops and branches too.
 
     Args:
         function: the function.
         rules: for a primitive's name, what replaces its equations whose output is float32.
-        kept: the variables of a list of equations that are computed as they are, in spite of a rule.
     """
 
     def compute(*arguments: Any) -> Any:
         jaxpr, shapes = jax.make_jaxpr(function, return_shape=True)(*arguments)
-        outputs = _Rewriter(rules, kept)(jaxpr, *jax.tree.leaves(arguments))
+        outputs = _Rewriter(rules)(jaxpr, *jax.tree.leaves(arguments))
         return jax.tree.unflatten(jax.tree.structure(shapes), outputs)
 
     return compute
@@ -54,21 +51,20 @@ def uses_first(function: Callable, *arguments: Any) -> bool:
 class _Rewriter:
     """An interpreter of equations."""
 
-    def __init__(self, rules: Mapping[str, Rule], kept: Callable[[Jaxpr], set]) -> None:
-        self._rules, self._kept = rules, kept
+    def __init__(self, rules: Mapping[str, Rule]) -> None:
+        self._rules = rules
 
     def __call__(self, function: Any, *arguments: Any) -> list[Any]:
         """Return the outputs of a function for these arguments."""
         jaxpr, consts = _opened(function)
         values = dict(zip([*jaxpr.constvars, *jaxpr.invars], [*consts, *arguments], strict=True))
-        kept = self._kept(jaxpr)
 
         def read(variable: Any) -> Any:
             return variable.val if isinstance(variable, Literal) else values[variable]
 
         for equation in jaxpr.eqns:
             inputs = [read(each) for each in equation.invars]
-            if self._has_rule(equation) and equation.outvars[0] not in kept:
+            if self._has_rule(equation):
                 outputs = [self._rules[equation.primitive.name](equation, inputs)]
             else:
                 outputs = self._apply(equation, inputs)

@@ -19,7 +19,7 @@ from primordia.settings.limits import Stop
 from tests.commands import begin, complains, here
 
 WHAT = ("CartPole-survival", "--seeds", "8", "--cells", "64", "--stop.until", "saturation")
-TICKS = 3_000
+TICKS = 30_000
 SLOWLY = ("--checkpoint-every", "0.05")
 
 
@@ -135,7 +135,7 @@ def test_half_written_files_are_ignored(through: list[str], tmp_path: Path) -> N
 
 def test_a_damaged_newest_checkpoint_is_skipped(through: list[str], tmp_path: Path) -> None:
     run = tmp_path / "run"
-    assert here("run", *WHAT, "--ticks", 2_700, "--out", run, *SLOWLY).returncode == 0
+    assert here("run", *WHAT, "--ticks", 27_000, "--out", run, *SLOWLY).returncode == 0
     newest = sorted(run.glob("checkpoints/0*"))[-1]
     state = newest / "state.npz"
     damaged = bytearray(state.read_bytes())

@@ -1,8 +1,7 @@
 """Functions of JAX whose sums over axes do not depend on the number of bodies.
 
 A compiler sums in an order of its own, which depends on shapes. Here sums over axes, also those of
-matrix products, are trees of additions in a fixed order. Products are rounded where the function is
-compiled (see `primordia.rounding`).
+matrix products, are trees of additions in a fixed order.
 """
 
 from collections.abc import Callable
