@@ -30,6 +30,7 @@ LAYERS = [
     {"experiments"},
     {"film", "report"},
     {"api", "envs", "testing"},
+    {"doctor"},
     {"cli"},
     {"__main__"},
 ]

@@ -9,6 +9,7 @@ from primordia import interrupts, own_code
 from primordia.cli import (
     bundle,
     descent,
+    doctor,
     environments,
     evaluate,
     evolve,
@@ -64,6 +65,7 @@ PARTS = (
     evaluate,
     shadow,
     assays,
+    doctor,
 )
 for command in (each for part in PARTS for each in part.COMMANDS):
     commands.add_command(command)

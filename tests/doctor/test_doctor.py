@@ -1,0 +1,88 @@
+"""The doctor: what is installed, whether the promises hold, and that it finds when they do not."""
+
+import json
+from collections.abc import Iterator
+from importlib.metadata import metadata
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner
+
+from primordia import compiled, device
+from primordia.cli.doctor import doctor
+from primordia.doctor import installed, memo, promises
+from primordia.doctor.promises import Trial
+
+
+def without_the_cure(function: Any) -> Any:
+    """Undo the cure: let the compiler contract and regroup."""
+    return lambda zero, *arguments: function(*arguments)
+
+
+def test_it_finds_that_arithmetic_is_not_as_written(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert promises._arithmetic() == ""
+    monkeypatch.setattr(compiled, "rounded", without_the_cure)
+    assert "numbers are rounded in another way than by NumPy" in promises._arithmetic()
+
+
+def test_a_trial_that_fails_in_any_way_is_a_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken() -> str:
+        raise RuntimeError("no\nmemory")
+
+    monkeypatch.setattr(promises, "_attempts", lambda: iter([("a", broken), ("b", lambda: "")]))
+    assert list(promises.trials()) == [Trial("a", "RuntimeError: no memory"), Trial("b", "")]
+
+
+def test_every_extra_of_the_package_is_named() -> None:
+    assert set(installed.extras()) == set(metadata("primordia").get_all("Provides-Extra") or ())
+
+
+@pytest.mark.slow
+def test_the_promises_hold_here() -> None:
+    assert [trial for trial in promises.trials() if trial.fault] == []
+
+
+@pytest.fixture
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
+    return tmp_path
+
+
+@pytest.mark.parametrize("fault", ["", "1a2b... alone, 3c4d... beside others"])
+def test_the_exit_status_says_whether_all_promises_hold(
+    fault: str, home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def trials() -> Iterator[Trial]:
+        yield Trial("chunks", "")
+        yield Trial("worlds", fault)
+
+    monkeypatch.setattr(promises, "trials", trials)
+    shown = CliRunner().invoke(doctor)
+    assert shown.exit_code == (1 if fault else 0)
+    assert "holds  chunks\n" in shown.output
+    assert ("FAILS  worlds: 1a2b" in shown.output) == bool(fault)
+    result = json.loads(CliRunner().invoke(doctor, ["--json"]).output)
+    assert result["holds"] == (not fault)
+    assert [row["fault"] for row in result["trials"]] == ["", fault]
+    assert result["facts"]["jax"]
+    assert "mujoco" in result["extras"]
+
+
+VERSIONS = dict.fromkeys((*device.PACKAGES, "device", "instruction_set"), "9")
+
+
+def test_versions_that_were_never_tried_are_named_once(home: Path) -> None:
+    assert "primordia doctor" in memo.warning(VERSIONS)
+    assert memo.warning(VERSIONS) == ""
+    assert "primordia doctor" in memo.warning({**VERSIONS, "jax": "10"})
+
+
+def test_versions_that_were_tried_are_not_named(
+    home: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(device, "versions", lambda: VERSIONS)
+    memo.remember(passed=True)
+    assert memo.warning(VERSIONS) == ""
+    (home / "primordia" / "doctor.json").write_text("[damaged")
+    assert "primordia doctor" in memo.warning(VERSIONS)
