@@ -1,14 +1,15 @@
 # Python >= 3.11, git and make are required. These targets install everything else into .venv.
 PYTHON ?= python3
-BIN := .venv/bin
+VENV ?= .venv
+BIN := $(VENV)/bin
 # These versions are tested. `make CONSTRAINTS= demo` takes the newest releases instead.
 CONSTRAINTS ?= --constraint constraints.txt --build-constraint constraints.txt
 # Tests keep the code that they compile, which saves a third of the time when they are run again.
-TESTS := JAX_COMPILATION_CACHE_DIR=$(CURDIR)/.venv/compiled $(BIN)/python -m pytest --numprocesses 2
+TESTS := JAX_COMPILATION_CACHE_DIR=$(CURDIR)/$(VENV)/compiled $(BIN)/python -m pytest --numprocesses 2
 
-.PHONY: demo test quick slow compiled check docs format figures bench mutants constraints clean
+.PHONY: demo test quick slow newest compiled check docs format figures bench mutants constraints clean
 
-demo: .venv/installed  ## evolve pole balancers, draw and report them, and film the first life beside a long one
+demo: $(VENV)/installed  ## evolve pole balancers, draw and report them, and film the first life beside a long one
 	rm -rf runs/demo
 	$(BIN)/primordia run CartPole-survival --out runs/demo
 	$(BIN)/primordia plot runs/demo
@@ -19,69 +20,73 @@ demo: .venv/installed  ## evolve pole balancers, draw and report them, and film 
 	@echo "Explore    runs/demo/report.html in a browser: every organism, its line of descent, the film of its world"
 	@echo 'Read on    docs/tutorial.md, ten minutes; `source .venv/bin/activate` puts `primordia` on the path'
 
-test: .venv/installed-dev compiled  ## run all tests: about twenty minutes on two cores, less the second time
+test: $(VENV)/installed-dev compiled  ## run all tests: about twenty minutes on two cores, less the second time
 	$(TESTS) --dist loadfile --no-loadscope-reorder
 
-quick: .venv/installed-dev compiled  ## test each promise once, with the tests in tests/quick.txt: a minute on two cores
+quick: $(VENV)/installed-dev compiled  ## test each promise once, with the tests in tests/quick.txt: a minute on two cores
 	$(TESTS) --dist loadfile --no-loadscope-reorder @tests/quick.txt
 
-slow: .venv/installed-dev compiled  ## run the tests marked slow: an hour of kills, forged runs, generated inputs and all goldens
+slow: $(VENV)/installed-dev compiled  ## run the tests marked slow: an hour of kills, forged runs, generated inputs and all goldens
 	$(TESTS) -m slow
 
-compiled:
-	@[ "$$(du -sm .venv/compiled 2> /dev/null | cut -f 1)" -lt 1000 ] 2> /dev/null || rm -rf .venv/compiled
+newest:  ## run `make quick` on the newest Python at hand, with the newest releases of all libraries
+	@for each in python3.14 python3.13 python3.12 python3; do \
+	  if $$each -c '' 2> /dev/null; then $(MAKE) VENV=.venv-newest CONSTRAINTS= PYTHON=$$each quick; exit; fi; done
 
-check: .venv/installed-dev  ## check format, lint and types, run all tests, and build the site
+compiled:
+	@[ "$$(du -sm $(VENV)/compiled 2> /dev/null | cut -f 1)" -lt 1000 ] 2> /dev/null || rm -rf $(VENV)/compiled
+
+check: $(VENV)/installed-dev  ## check format, lint and types, run all tests, and build the site
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(MAKE) test docs
 
-docs: .venv/installed-docs  ## build the site into build/site; broken links and anchors fail
+docs: $(VENV)/installed-docs  ## build the site into build/site; broken links and anchors fail
 	$(BIN)/python docs/site.py
 
-format: .venv/installed-dev
+format: $(VENV)/installed-dev
 	$(BIN)/ruff format .
 	$(BIN)/ruff check --fix .
 
-figures: .venv/installed-dev  ## fill the figures of committed tables into the pages; a test compares them
+figures: $(VENV)/installed-dev  ## fill the figures of committed tables into the pages; a test compares them
 	$(BIN)/python docs/templates/fill.py
 
-bench: .venv/installed-dev  ## measure every figure; `make bench JSON=file.json` writes them to a file
+bench: $(VENV)/installed-dev  ## measure every figure; `make bench JSON=file.json` writes them to a file
 	$(BIN)/python benchmarks/bench.py $(if $(JSON),--json $(JSON))
 
-mutants: .venv/installed-mutants  ## plant faults and count those noticed, hours; `make mutants FILES="law/tick.py" SAMPLE=10 SEED=1`
+mutants: $(VENV)/installed-mutants  ## plant faults and count those noticed, hours; `make mutants FILES="law/tick.py" SAMPLE=10 SEED=1`
 	$(BIN)/python benchmarks/mutants.py $(FILES) $(if $(SAMPLE),--sample $(SAMPLE)) $(if $(SEED),--seed $(SEED)) $(if $(JSON),--json $(JSON))
 
 constraints:  ## write the newest releases into constraints.txt; run `make check` before you commit it
-	rm -rf .venv
-	$(MAKE) CONSTRAINTS= .venv/installed-mutants .venv/installed-docs
-	sed -n '/^#/p' constraints.txt > .venv/constraints
-	$(BIN)/python -m pip freeze --exclude-editable | sed '/^pymdown-extensions/d; s/$$/; python_version < "3.14"/' >> .venv/constraints
-	mv .venv/constraints constraints.txt
+	rm -rf $(VENV)
+	$(MAKE) CONSTRAINTS= $(VENV)/installed-mutants $(VENV)/installed-docs
+	sed -n '/^#/p' constraints.txt > $(VENV)/constraints
+	$(BIN)/python -m pip freeze --exclude-editable | sed '/^pymdown-extensions/d; s/$$/; python_version < "3.14"/' >> $(VENV)/constraints
+	mv $(VENV)/constraints constraints.txt
 
 clean:
-	rm -rf .venv
+	rm -rf .venv .venv-newest
 
-.venv/bin/python:
+$(VENV)/bin/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
 	  || { echo "Primordia needs Python 3.11 or newer; try: make PYTHON=python3.12 demo" >&2; exit 2; }
-	$(PYTHON) -m venv .venv
+	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --upgrade pip
 
-.venv/installed: .venv/bin/python pyproject.toml constraints.txt
+$(VENV)/installed: $(VENV)/bin/python pyproject.toml constraints.txt
 	$(BIN)/python -m pip install --quiet $(CONSTRAINTS) --editable .
 	@touch $@
 
-.venv/installed-dev: .venv/installed
+$(VENV)/installed-dev: $(VENV)/installed
 	$(BIN)/python -m pip install --quiet $(CONSTRAINTS) --group dev
 	$(BIN)/python -m pip install --quiet $(CONSTRAINTS) --no-deps --group no-deps
 	@touch $@
 
-.venv/installed-mutants: .venv/installed-dev
+$(VENV)/installed-mutants: $(VENV)/installed-dev
 	$(BIN)/python -m pip install --quiet $(CONSTRAINTS) --group mutants
 	@touch $@
 
-.venv/installed-docs: .venv/installed-dev
+$(VENV)/installed-docs: $(VENV)/installed-dev
 	$(BIN)/python -m pip install --quiet $(CONSTRAINTS) --group docs
 	@touch $@
