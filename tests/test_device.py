@@ -216,6 +216,7 @@ def test_the_selected_platform_is_the_default_in_a_block_only(
         return real(backend=backend)
 
     monkeypatch.setattr(jax, "local_devices", local)
+    monkeypatch.setattr(device, "default", lambda: None)  # a device of another platform
     config: Any = jax.config
     before = config.jax_default_device
     with device.selected("cpu"):

@@ -6,7 +6,8 @@ If all three are equal, the results are equal to the last bit.
 import os
 import platform
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext, suppress
+from contextvars import ContextVar
 from importlib.metadata import version
 from pathlib import Path
 
@@ -18,6 +19,7 @@ from primordia import cores
 from primordia.errors import InputError
 
 PACKAGES = ("primordia", "jax", "jaxlib", "numpy")
+CPU = "cpu"
 ISA_FLAG = "--xla_cpu_max_isa"
 SAME_BITS = (
     "--xla_dump",
@@ -66,20 +68,51 @@ def prepare() -> None:
         jax.config.update(name, before)
 
 
+_CHOSEN: ContextVar[bool] = ContextVar("chosen", default=False)
+"""Whether the device was chosen by name, so the devices of runs do not matter."""
+
+
 @contextmanager
-def selected(name: str) -> Iterator[None]:
-    """Compute on the named platform, `cpu` or `gpu`, in a `with` block.
+def selected(name: str | None, made_on: str = CPU) -> Iterator[None]:
+    """Compute on a platform, or on the device of a run, in a `with` block.
+
+    Args:
+        name: `cpu` or `gpu`; None: the device of the run, unless a block around this one has chosen
+            a platform by name.
+        made_on: the recorded device of the run, as in `versions`.
 
     Raises:
         InputError: JAX has no such device here.
     """
-    try:
-        prepare()
-        first = jax.local_devices(backend=name)[0]
-    except RuntimeError:
-        raise InputError(f"--device: JAX finds no {name!r} device on this machine") from None
-    with jax.default_device(first):
+    prepare()
+    if name is None and _CHOSEN.get():
         yield
+        return
+    first = _first(made_on if name is None else name)
+    if first is None and name is not None:
+        raise InputError(f"--device: JAX finds no {name!r} device on this machine")
+    if first is None:
+        raise InputError(
+            f"the run was made on {made_on}, which JAX does not find on this machine, and other devices"
+            " give other bits; use a machine that has it, or choose another device with --device cpu"
+        )
+    token = _CHOSEN.set(name is not None)
+    try:
+        # Code compiled outside a block that changes nothing is used inside it, too.
+        with nullcontext() if first == default() else jax.default_device(first):
+            yield
+    finally:
+        _CHOSEN.reset(token)
+
+
+def _first(wanted: str) -> jax.Device | None:
+    """Return the first device of a platform or of a kind, or None."""
+    for platform_name in (CPU, "gpu", "tpu"):
+        with suppress(RuntimeError):  # JAX has no such platform here
+            for each in jax.local_devices(backend=platform_name):
+                if wanted in (platform_name, _kind(each)):
+                    return each
+    return None
 
 
 def default() -> jax.Device:
@@ -122,9 +155,12 @@ def instruction_set() -> str:
 
 def versions() -> dict[str, str]:
     """Return the versions, device and instruction set that must be equal for a run to go on exactly."""
-    own = default()
     return {
         **{name: version(name) for name in PACKAGES},
-        "device": own.device_kind if own.platform != "cpu" else "cpu",
+        "device": _kind(default()),
         "instruction_set": instruction_set(),
     }
+
+
+def _kind(device: jax.Device) -> str:
+    return CPU if device.platform == CPU else device.device_kind

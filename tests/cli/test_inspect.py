@@ -93,8 +93,8 @@ LINES: dict[str, list[tuple[Any, ...]]] = {
     "export run file --world 2 --organism 9 --organism 7 --trust": [
         ("load", Path("run"), True), ("export", Path("file"), 9, 7, ("world", 2)),
     ],
-    "verify run": [("load", Path("run"), False), ("verify", "cpu")],
-    "verify run --device gpu --trust": [("load", Path("run"), True), ("verify", "gpu")],
+    "verify run": [("load", Path("run"), False), ("verify",)],
+    "verify run --device cpu --trust": [("load", Path("run"), True), ("verify",)],
     "compare a=one two": [
         ("compare", ("a=one", "two"), {"births": None, "ticks": None}), ("save", Path()),
     ],

@@ -15,8 +15,8 @@ from tests.commands import complains, here
 RUN, OUT = Path("RUN"), Path("OUT")
 LIMITS: tuple[Any, ...] = ("--ticks", 90, "--births", "none", "--until", "saturation")
 ENDS: dict[str, Any] = {"ticks": 90, "births": "none", "until": "saturation"}
-WAYS = ("--checkpoint-every", 7, "--device", "gpu", "--quiet")
-WORLDS: dict[str, Any] = {"checkpoint_every": 7.0, "device": "gpu", "listen": None}
+WAYS = ("--checkpoint-every", 7, "--quiet")
+WORLDS: dict[str, Any] = {"checkpoint_every": 7.0, "listen": None}
 
 
 @pytest.fixture
@@ -78,13 +78,13 @@ CALLS: dict[tuple[Any, ...], Any] = {
     ("lines", RUN, "--world", "all", "--json"): call.lines(None, None),
     ("resume", RUN, "--inexact", *LIMITS, *WAYS): call.resume(inexact=True, **ENDS, **WORLDS),
     ("resume", RUN, "--quiet"):
-        call.resume(inexact=False, checkpoint_every=60.0, device="cpu", listen=None),
+        call.resume(inexact=False, checkpoint_every=60.0, listen=None),
     ("fork", RUN, "--at", 9, "--out", OUT, "--seed", 3, "--mutation.scale", 0.5, *LIMITS, *WAYS):
         call.fork(9, OUT, {"seed": 3, "mutation": {"scale": 0.5}, "stop": ENDS}, **WORLDS),
     ("fork", "of.b", "--at", 0, "--quiet"):
-        call.fork(0, Path("runs/of.b-at0"), {}, checkpoint_every=60.0, device="cpu", listen=None),
+        call.fork(0, Path("runs/of.b-at0"), {}, checkpoint_every=60.0, listen=None),
     ("fork", RUN, "--at", 9, "--quiet"):
-        call.fork(9, Path("runs/RUN-at9"), {}, checkpoint_every=60.0, device="cpu", listen=None),
+        call.fork(9, Path("runs/RUN-at9"), {}, checkpoint_every=60.0, listen=None),
 }  # fmt: skip
 """Words of a command -> the call that it makes."""
 
@@ -123,8 +123,9 @@ def test_a_run_is_begun_with_the_settings_of_its_flags(
     task, flags = "CartPole-survival", ("--cells", 8, "--ancestor", "a", "--ancestor", "b")
     given = {"cells": 8, "ancestors": ["a", "b"], "stop": ENDS}
     with patch("primordia.api.run") as asked:
-        does("run", task, "--out", OUT, "--resume", *flags, *LIMITS, *WAYS)
-        asked.assert_called_once_with(task, OUT, given, resume=True, **WORLDS)
+        ways = (*WAYS, "--device", "gpu")
+        does("run", task, "--out", OUT, "--resume", *flags, *LIMITS, *ways)
+        asked.assert_called_once_with(task, OUT, given, resume=True, device="gpu", **WORLDS)
         does("run", task, "--seed", 3, "--quiet")
         own = {"checkpoint_every": 60.0, "device": "cpu", "listen": None}
         place = Path("runs", f"{task}-seed3")

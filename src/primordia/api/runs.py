@@ -124,9 +124,10 @@ class Run:
         `Group.evaluate`.
         """
         run = self.opened()
-        # The champions come first, so that a wrong option fails before many founders have lived.
-        found = [group.evaluate(**options) for group in evolved(run, world)]
-        return found + [group.evaluate(**options) for group in unevolved(run, founders, world)]
+        with devices.selected(None, run.versions["device"]):
+            # The champions come first, so that a wrong option fails before many founders have lived.
+            found = [group.evaluate(**options) for group in evolved(run, world)]
+            return found + [group.evaluate(**options) for group in unevolved(run, founders, world)]
 
     def shadow(self, organisms: int = ORGANISMS, ticks: int | None = None) -> Shadow:
         """Let organisms and their unselected shadows live again; see `shadow.shadow`."""
@@ -239,13 +240,16 @@ class Run:
         settings: Mapping[str, Any] | None = None,
         *,
         checkpoint_every: float = 60.0,
-        device: str = "cpu",
+        device: str | None = None,
         listen: Listener | None = None,
         **more: Any,
     ) -> "Run":
-        """Make a run that goes on, with changed settings, from the end of a tick; see `runs.fork`."""
+        """Make a run that goes on, with changed settings, from the end of a tick; see `runs.fork`.
+
+        `device` is `cpu` or `gpu`; by default the kind of device that made the run.
+        """
         path = Path(out) if out is not None else fresh_directory(f"{self.path.name}-at{at}")
-        with devices.selected(device):
+        with devices.selected(device, self.only().versions["device"]):
             fork(self.only(), at, path, {**(settings or {}), **more}, listen)
             loop.resume(path, checkpoint_every=checkpoint_every, listen=listen)
         return Run(path)
@@ -255,14 +259,17 @@ class Run:
         *,
         inexact: bool = False,
         checkpoint_every: float = 60.0,
-        device: str = "cpu",
+        device: str | None = None,
         listen: Listener | None = None,
         **limits: Any,
     ) -> list[str]:
-        """Go on with the run; `limits` may change `ticks`, `births` or `until`. See `loop.resume`."""
+        """Go on with the run; `limits` may change `ticks`, `births` or `until`. See `loop.resume`.
+
+        `device` is `cpu` or `gpu`; by default the kind of device that made the run.
+        """
         every, run = checkpoint_every, self.only().path
         bundle.refuse_changes(run)
-        with devices.selected(device):
+        with devices.selected(device, self.only().versions["device"]):
             return loop.resume(run, limits, inexact=inexact, checkpoint_every=every, listen=listen)
 
     def bundle(self, file: str | Path) -> Path:
@@ -270,9 +277,9 @@ class Run:
         bundle.write(self.only().path, Path(file))
         return Path(file)
 
-    def verify(self, device: str = "cpu", listen: Listener | None = None) -> list[str]:
-        """Repeat the run and return the differences; see `verify.verify`."""
-        with devices.selected(device):
+    def verify(self, device: str | None = None, listen: Listener | None = None) -> list[str]:
+        """Repeat the run and return the differences; see `verify.verify` and, for `device`, `resume`."""
+        with devices.selected(device, self.only().versions["device"]):
             return verify(self.only(), listen)
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from primordia.cli.cache import cache_option
-from primordia.cli.flags import HabitatCommand, run_argument, trust_option
+from primordia.cli.flags import HabitatCommand, recorded_device_option, run_argument, trust_option
 from primordia.cli.numbers import COUNT, TICKS
 from primordia.cli.table import show_table, spread
 from primordia.errors import InputError
@@ -57,6 +57,7 @@ SENSES = {
     is_flag=True,
     help="Ignore the senses: repeat the actions of an earlier game in the run's own task.",
 )
+@recorded_device_option
 @trust_option
 @cache_option
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")

@@ -16,6 +16,7 @@ from primordia.cli.flags import (
     limit_options,
     out_option,
     quiet_option,
+    recorded_device_option,
     run_argument,
     set_value,
     speed_option,
@@ -68,6 +69,7 @@ def run(
     words, q saves and stops.
     """
     from primordia import api, config
+    from primordia.doctor import memo
 
     for name, value in take_limits(options).items():
         set_value(settings, f"stop.{name}", value)
@@ -77,13 +79,15 @@ def run(
     _drive(
         path, quiet, speed, lambda listen: api.run(task, path, settings, listen=listen, **options)
     )
+    if not quiet and (line := memo.warning(api.load(path).opened().versions)):
+        report(line)
 
 
 @click.command()
 @run_argument
 @limit_options
 @checkpoint_option
-@device_option
+@recorded_device_option
 @cache_option
 @click.option("--inexact", is_flag=True, help="Go on even if versions, code or machine differ.")
 @trust_option
@@ -114,7 +118,7 @@ def resume(run: Path, quiet: bool, speed: float | None, trust: bool, **options: 
 @out_option
 @limit_options
 @checkpoint_option
-@device_option
+@recorded_device_option
 @cache_option
 @trust_option
 @speed_option

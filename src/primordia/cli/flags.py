@@ -23,6 +23,21 @@ device_option = click.option(
     show_default=True,
     help="Compute on cpu, or on gpu: all GPUs that JAX finds.",
 )
+
+
+def _choose_device(context: click.Context, _: click.Parameter, name: str | None) -> None:
+    from primordia import device
+
+    if name is not None:
+        context.with_resource(device.selected(name))
+
+
+recorded_device_option = click.option(
+    "--device",
+    expose_value=False,
+    callback=_choose_device,
+    help="Compute on cpu or gpu [the kind of device that made the run; others give other bits].",
+)
 checkpoint_option = click.option(
     "--checkpoint-every",
     type=float,

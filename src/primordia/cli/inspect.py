@@ -10,7 +10,7 @@ from primordia import files
 from primordia.cli.cache import cache_option
 from primordia.cli.experiment import show_status
 from primordia.cli.flags import (
-    device_option,
+    recorded_device_option,
     run_argument,
     runs_argument,
     trust_option,
@@ -74,6 +74,7 @@ def plot(runs: tuple[Path, ...], out: Path | None, world: int, figures: tuple[st
 @click.option("--from", "begin", type=int, help="First age shown, in ticks.")
 @click.option("--to", "end", type=int, help="Last age shown, in ticks.")
 @video_option
+@recorded_device_option
 @trust_option
 @cache_option
 def replay(
@@ -146,14 +147,14 @@ def chosen_organism(run: Path, organism: int | None, world: int | None, trust: b
 
 @click.command(short_help="Repeat a run and compare.")
 @run_argument
-@device_option
+@recorded_device_option
 @trust_option
 @cache_option
-def verify(run: Path, device: str, trust: bool) -> None:
+def verify(run: Path, trust: bool) -> None:
     """Repeat a run from its beginning and compare every birth, death and genome with its records."""
     from primordia.api import load
 
-    differences = load(run, trust).verify(device)
+    differences = load(run, trust).verify()
     if differences:
         raise Trouble(f"{run} differs from its records when repeated: {differences[0]}")
     click.echo(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from primordia.cli.cache import cache_option
-from primordia.cli.flags import run_argument, trust_option
+from primordia.cli.flags import recorded_device_option, run_argument, trust_option
 from primordia.cli.paths import OutputPath
 from primordia.cli.table import show_table
 from primordia.errors import Trouble
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     metavar="FILE",
     help="Also write a video (.mp4 or .gif). It shows only the first and last 30 seconds of a long life.",
 )
+@recorded_device_option
 @trust_option
 @cache_option
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from primordia.cli.cache import cache_option
-from primordia.cli.flags import runs_argument, trust_option
+from primordia.cli.flags import recorded_device_option, runs_argument, trust_option
 from primordia.cli.numbers import COUNT, TICKS
 
 if TYPE_CHECKING:
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     help="Largest number of organisms from each world.",
 )
 @click.option("--ticks", type=TICKS, help="Cut lives at this age [the task's saturation_ticks].")
+@recorded_device_option
 @trust_option
 @cache_option
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")

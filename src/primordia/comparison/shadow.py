@@ -23,7 +23,7 @@ from primordia.law.metabolism import Rates
 from primordia.organism.games import Players, lifespans
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
-from primordia.runs.records import Records
+from primordia.runs.records import Records, on_its_device
 
 ORGANISMS = 500
 """Default for the largest number of organisms of a world that are born again."""
@@ -100,6 +100,7 @@ class Shadow:
         }
 
 
+@on_its_device
 def shadow(run: Records, organisms: int = ORGANISMS, ticks: int | None = None) -> Shadow:
     """Let organisms of a run and their shadows live again, in pairs.
 

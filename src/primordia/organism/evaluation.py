@@ -16,7 +16,7 @@ from primordia.errors import InputError
 from primordia.organism.games import Games, Players, play
 from primordia.organism.players import players_of
 from primordia.organism.playing.seats import Frozen
-from primordia.runs.records import Records
+from primordia.runs.records import Records, on_its_device
 from primordia.settings.fields import setting_fields
 from primordia.settings.tables import NONE, did_you_mean, merged, replaced
 
@@ -89,6 +89,7 @@ class Evaluation:
         return {**result, "score": score._asdict(), "length": length._asdict(), "cut": cut}
 
 
+@on_its_device
 def evaluate(
     run: Records,
     organisms: Sequence[tuple[int, int]],

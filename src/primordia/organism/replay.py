@@ -19,7 +19,7 @@ from primordia.organism import video
 from primordia.organism.reliving.instant import Stretch
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import bundle
-from primordia.runs.records import Records
+from primordia.runs.records import Records, on_its_device
 
 PART = 30.0
 """Seconds shown at each end of a long life; a life of at most twice this time is shown whole."""
@@ -30,6 +30,7 @@ GAP = 16
 """pixels between lives that are shown side by side"""
 
 
+@on_its_device
 def replay(
     run: Records,
     organism: int,

@@ -14,7 +14,7 @@ from primordia.runs import checkpoint, directory
 from primordia.runs.archive import Archive
 from primordia.runs.arm import run_of
 from primordia.runs.arrays import Arrays, world_ticks
-from primordia.runs.records import Records
+from primordia.runs.records import Records, on_its_device
 
 
 @dataclass(frozen=True)
@@ -71,6 +71,7 @@ class Revival:
                 "notes": list(self.notes), "files": files}  # fmt: skip
 
 
+@on_its_device
 def revive(
     run: Records,
     organism: int,

@@ -6,13 +6,14 @@ runs as one.
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import cache, cached_property, partial
+from functools import cache, cached_property, partial, wraps
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar, cast
 
 import numpy as np
 import pyarrow as pa
 
+from primordia import device
 from primordia.brains.layout import Layout
 from primordia.config import Config
 from primordia.habitats.contract import AnyHabitat
@@ -23,6 +24,8 @@ from primordia.runs.description import Description
 from primordia.runs.lives import Lives
 from primordia.runs.manifest import Progress
 from primordia.runs.schema import Schema
+
+F = TypeVar("F", bound=Callable)
 
 
 class Records(ABC):
@@ -171,3 +174,17 @@ class Records(ABC):
         order = np.lexsort((number, world))
         rows = order[lives.rows_in(world[order], number[order])]
         return [births[name].fill_null(-1).to_numpy()[rows] for name in columns]
+
+
+def on_its_device(function: F) -> F:
+    """Let a function of a run compute on the kind of device that made the run, unless one is chosen.
+
+    The function raises InputError if JAX has no such device here.
+    """
+
+    @wraps(function)
+    def call(run: Records, *given: Any, **options: Any) -> Any:
+        with device.selected(None, run.versions["device"]):
+            return function(run, *given, **options)
+
+    return cast(F, call)

@@ -1,0 +1,81 @@
+"""The recorded device is the default of everything that lives a run, or its lives, again."""
+
+import json
+from pathlib import Path
+from types import SimpleNamespace
+
+import jax
+import pytest
+from click.testing import CliRunner
+
+import primordia
+from primordia import device
+from primordia.cli.commands import commands
+from primordia.errors import InputError
+
+CARD = "NVIDIA H100 80GB HBM3"
+
+
+@pytest.fixture(scope="module")
+def elsewhere(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run that says that it was made on a device which is not here."""
+    run = tmp_path_factory.mktemp("device") / "run"
+    primordia.run("CartPole-survival", run, {"stop": {"ticks": 60, "until": None}}, cells=8)
+    versions = json.loads((run / "versions.json").read_text())
+    (run / "versions.json").write_text(json.dumps({**versions, "device": CARD}))
+    return run
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["resume", "--ticks", "80"],
+        ["verify"],
+        ["revive", "0"],
+        ["replay"],
+        ["evaluate", "--games", "1"],
+        ["fork", "--at", "20"],
+        ["shadow"],
+    ],
+    ids=lambda words: words[0],
+)
+def test_a_device_that_is_not_here_is_named_in_one_line(
+    command: list[str], elsewhere: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    before = sorted(elsewhere.rglob("*"))
+    name, *flags = command
+    error = CliRunner().invoke(commands, [name, str(elsewhere), *flags]).exception
+    assert isinstance(error, InputError)
+    assert f"made on {CARD}" in str(error)
+    assert "--device cpu" in str(error)
+    assert sorted(elsewhere.rglob("*")) == before
+    assert not list(tmp_path.iterdir())
+
+
+def test_another_device_can_be_chosen(elsewhere: Path) -> None:
+    """Lives of this run were lived on the CPU, so they agree there."""
+    revived = CliRunner().invoke(commands, ["revive", str(elsewhere), "0", "--device", "cpu"])
+    assert revived.exit_code == 0, revived.output
+    refused = CliRunner().invoke(commands, ["resume", str(elsewhere), "--device", "cpu"]).exception
+    assert f"device {CARD} then, cpu now" in str(refused)
+
+
+def test_the_recorded_kind_is_found_among_all_platforms(monkeypatch: pytest.MonkeyPatch) -> None:
+    here = jax.local_devices()[0]
+    card = SimpleNamespace(platform="gpu", device_kind=CARD)
+    found = {"cpu": [here], "gpu": [card]}
+    monkeypatch.setattr(jax, "local_devices", lambda backend: found.get(backend, []))
+    assert device._first(CARD) is card
+    assert device._first("gpu") is card
+    assert device._first("cpu") is here
+    assert device._first("TPU v9") is None
+
+
+def test_a_run_computes_on_its_device_and_a_choice_replaces_it() -> None:
+    with device.selected("cpu"), device.selected(None, CARD):
+        assert device.default().platform == "cpu"
+    with pytest.raises(InputError, match="made on NVIDIA"), device.selected(None, CARD):
+        pass
+    with pytest.raises(InputError, match="no 'gpu' device"), device.selected("gpu"):
+        pass
