@@ -9,7 +9,7 @@ from typing import Any, Literal, Self
 
 import numpy as np
 import tomli_w
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
 from primordia.brains import contract as brains
 from primordia.brains import genomes
@@ -104,6 +104,8 @@ class Config(Settings):
     stop: Stop = Stop()
     fork: ForkedFrom | None = Field(None, description="set by `primordia fork`")
 
+    _kept: dict[str, str] = PrivateAttr({})
+
     @model_validator(mode="after")
     def _fits(self) -> Self:
         self.placement.shape(self.cells)
@@ -111,13 +113,27 @@ class Config(Settings):
             raise ValueError("seeds must be below 2^64; choose a lower seed or fewer")
         return self
 
+    @property
+    def kept(self) -> dict[str, str]:
+        """The path of the copy that a run holds of each file named by the habitat's settings."""
+        return self._kept
+
+    def keeping(self, copies: dict[str, str]) -> Self:
+        """Return the same settings; the habitat is made with these copies of files."""
+        config = self.model_copy()
+        config._kept = copies
+        return config
+
     def build_habitat(self) -> AnyHabitat:
         """Return the habitat, made from its class and settings.
 
         Raises:
             InputError: there is no such habitat, or the habitat does not take these settings.
         """
-        habitat = make("habitat", self.habitat, habitats.find)
+        table = self.habitat
+        for original, copy in self._kept.items():
+            table = replaced(table, original, copy)
+        habitat = make("habitat", table, habitats.find)
         check_properties(habitat)
         return habitat
 
@@ -275,20 +291,6 @@ def checked(config: Config, source: str) -> Config:
     except (InputError, ValueError) as error:
         raise refusal(source, error) from None
     return config
-
-
-def limits(values: dict[str, Any]) -> dict[str, Any]:
-    """Return settings of `stop`, checked.
-
-    Raises:
-        InputError: a setting is unknown or out of range.
-    """
-    values = replaced(values, NONE, None)
-    try:
-        Stop.model_validate(values)
-    except ValidationError as error:
-        raise InputError(first_fault(error, Stop)) from None
-    return values
 
 
 def _check(config: Config) -> None:

@@ -41,8 +41,8 @@ def test_a_run_is_not_resumed_with_another_model(box: Path) -> None:
     model = box.parent / "box.xml"
     same = model.read_text()
     model.write_text(same.replace("0.1", "0.2"))
-    complains(here("resume", box, "--ticks", 30), 2, "box.xml sha256", "then", "now", "--inexact")
-    model.write_text("<!-- the same box -->" + same)
+    complains(here("resume", box, "--ticks", 30), 2, "box.xml has changed", "--inexact")
+    model.write_text(same)
     assert here("resume", box, "--ticks", 30).returncode == 0
     assert primordia.load(box).info()["worlds"][0]["ticks"] == 30
 

@@ -169,7 +169,7 @@ def invented(**changed: Any) -> Any:
         "config": config(TORUS, seeds=2, hazard=0.0, about=""),
         "progress": SimpleNamespace(limits=config(TORUS, stop={"ticks": 2700}).stop),
         "versions": {"primordia": "1"},
-        "description": SimpleNamespace(code={}),
+        "description": SimpleNamespace(code={}, files={}),
     }
     return SimpleNamespace(**{**parts, **changed})
 

@@ -5,10 +5,10 @@ from typing import Any
 import pytest
 
 from primordia.brains.contract import KNOWN as BRAINS
-from primordia.config import _check, limits, load, parsed
+from primordia.config import _check, load, parsed
 from primordia.errors import InputError
 from primordia.habitats.contract import Compound, Continuous, Discrete
-from primordia.settings.limits import Stop
+from primordia.settings.limits import Stop, checked
 from tests.toys import Meadow, Organ
 from tests.worlds import MEADOW, MILL, config, law_of
 
@@ -77,12 +77,12 @@ def test_records_begin_after_the_tick_of_a_fork() -> None:
 
 def test_limits_are_checked_and_none_is_no_limit() -> None:
     given = {"ticks": "none", "births": 5, "until": "saturation"}
-    assert limits(given) == {"ticks": None, "births": 5, "until": "saturation"}
+    assert checked(given) == {"ticks": None, "births": 5, "until": "saturation"}
     assert Stop() == Stop(ticks=None, births=None, until=None)
     with pytest.raises(InputError, match=r"^births: .* not 0$"):
-        limits({"births": 0})
+        checked({"births": 0})
     with pytest.raises(InputError, match=r"^there is no setting 'tick'; did you mean 'ticks'\?$"):
-        limits({"tick": 1})
+        checked({"tick": 1})
 
 
 def test_one_continuous_part_of_an_action_is_enough_for_a_gaussian_motor() -> None:

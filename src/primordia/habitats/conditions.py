@@ -192,6 +192,8 @@ class _Reader:
 
     def _read_subscript(self, node: ast.Subscript) -> tuple[Kind, Compute]:
         base = node.value
+        if isinstance(base, ast.Name) and base.id not in self._names:
+            return self._read_name(base)  # which says what there is
         known = self._names.get(base.id) if isinstance(base, ast.Name) else None
         if isinstance(base, ast.Name) and isinstance(known, Mapping):
             return self._part(node, base.id, known)

@@ -194,6 +194,15 @@ class Habitat(ABC):
         needed = self.abilities[ability]
         return [name for name in needed if getattr(own, name) is getattr(defaults, name)]
 
+    @staticmethod
+    def files_with(file: str) -> list[str]:
+        """Return the full paths of a file that a setting names, and of all files that this file needs.
+
+        Settings that name files are `file` and all others that end in `_file`. Each run keeps copies of
+        these files, and its lives use them. The default: the file needs no other.
+        """
+        return [file]
+
     def check(self, cells: int) -> None:  # noqa: B027 - a default
         """Raise ValueError if these settings do not allow a run with this number of cells."""
 

@@ -8,7 +8,7 @@ from primordia import config as configs
 from primordia.config import Config
 from primordia.errors import InputError
 from primordia.runs.records import Records
-from primordia.settings.tables import NONE, flat, tasks
+from primordia.settings.tables import NONE, files_in, flat, replaced, tasks
 
 
 def facts(run: Records, info: dict[str, Any]) -> dict[str, Any]:
@@ -33,7 +33,9 @@ def facts(run: Records, info: dict[str, Any]) -> dict[str, Any]:
         ],
         "exact": info["exact"],
         "restarts": info["restarts"],
-        "commands": commands(config, run.path.resolve().name, bool(run.description.code)),
+        "commands": commands(
+            config, run.path.resolve().name, bool(run.description.code or run.description.files)
+        ),
     }
 
 
@@ -42,23 +44,31 @@ def _shown(run: Records) -> Config:
     config = run.config
     fork = config.fork and config.fork.model_copy(update={"run": Path(config.fork.run).name})
     ancestors = tuple(Path(each).name for each in config.ancestors)
-    changes = {"stop": run.progress.limits, "fork": fork, "ancestors": ancestors}
+    habitat = config.habitat
+    for each in files_in(habitat):
+        habitat = replaced(habitat, each, Path(each).name)
+    changes = {
+        "habitat": habitat,
+        "stop": run.progress.limits,
+        "fork": fork,
+        "ancestors": ancestors,
+    }
     return config.model_copy(update=changes)
 
 
-def commands(config: Config, name: str, own_code: bool) -> list[str]:
+def commands(config: Config, name: str, own: bool) -> list[str]:
     """Return the commands that repeat a run and show whether the result is the same.
 
     The commands are enough if the task is built in and the run's settings fit into flags. Other
-    runs need the `config.toml` in the page. A fork, or a run with its own genomes or code, needs
+    runs need the `config.toml` in the page. A fork, or a run with its own genomes, code or files, needs
     its directory.
 
     Args:
         config: the settings.
         name: the name of the run's directory.
-        own_code: whether the run holds code.
+        own: whether the run holds code or files of the user.
     """
-    if config.fork or config.ancestors or own_code:
+    if config.fork or config.ancestors or own:
         return [shlex.join(["primordia", "verify", name])]
     flags = _flags(config)
     what = ["config.toml"] if flags is None else [config.task, *flags]

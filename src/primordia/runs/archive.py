@@ -15,7 +15,7 @@ from primordia.habitats.contract import AnyHabitat
 from primordia.law.heredity import Heredity
 from primordia.law.law import Law
 from primordia.law.metabolism import Metabolism
-from primordia.runs import checkpoint, code, description, directory, segment
+from primordia.runs import checkpoint, code, description, directory, kept, segment
 from primordia.runs.arrays import Arrays
 from primordia.runs.checkpoint import Checkpoint
 from primordia.runs.code import Code
@@ -27,7 +27,7 @@ from primordia.runs.records import Records
 from primordia.runs.schema import TABLES
 from primordia.runs.shapes import Expected
 from primordia.settings.fields import rates_of
-from primordia.settings.tables import PARTS
+from primordia.settings.tables import PARTS, files_in
 
 
 class Archive(Records):
@@ -44,7 +44,7 @@ class Archive(Records):
 
         Args:
             path: the directory.
-            edited: execute the present version of the user's own code, not the run's copy.
+            edited: use the present version of the user's own code and files, not the run's copy.
 
         Raises:
             InputError: the directory holds no run, or a run that this version cannot read.
@@ -53,6 +53,8 @@ class Archive(Records):
         self.config: Config = directory.read_config(self.path)
         self.fault_in = cache(files.fault_in)
         """`files.fault_in` with a memory of results, so that no file is read twice"""
+        if files_in(self.config.habitat):
+            self.config = kept.keeping(self.config, self.path, self.description, edited)
         self._fitting: set[Path] = set()  # the checkpoints whose arrays fit the settings
 
     @property
@@ -85,6 +87,8 @@ class Archive(Records):
             InputError: the user has not trusted the code yet.
         """
         code.admit(self.path, self.code(*parts))
+        if "habitat" in (parts or PARTS):
+            kept.check(self.config, self.path, self.description)
 
     @cached_property
     def habitat(self) -> AnyHabitat:
@@ -133,8 +137,10 @@ class Archive(Records):
 
     @property
     def changed_code(self) -> list[str]:
-        """A line for each file of the user's own code that has changed since the run began."""
-        return code.changes(self.config, self.description.code)
+        """A line for each of the user's own files, of code or named by settings, that has changed since
+        the run began."""
+        about = self.description
+        return code.changes(self.config, about.code) + kept.changes(about)
 
     @cached_property
     def newest(self) -> tuple[Checkpoint | None, list[str]]:

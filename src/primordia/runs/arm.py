@@ -233,7 +233,7 @@ def _refuse_others(runs: Sequence[Archive]) -> None:
     first, *others = runs
     compared: dict[str, Callable[[Archive], Any]] = {
         "settings": _settings,
-        "description": lambda run: flat(run.description.model_dump()),
+        "description": lambda run: flat(run.description.model_dump(exclude={"files_from"})),
         "ancestors": lambda run: {"genomes": run.config.ancestors and _founders(run)},
     }
     for run in others:

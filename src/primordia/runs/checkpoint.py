@@ -22,6 +22,7 @@ from primordia.errors import Trouble
 from primordia.runs import manifest as manifests
 from primordia.runs.arrays import Arrays, FaultOf
 from primordia.runs.code import FOLDER as CODE
+from primordia.runs.kept import FOLDER as FILES
 from primordia.runs.manifest import INPUTS, Manifest, Progress, Seal
 from primordia.runs.record import Recorder
 from primordia.runs.schema import TABLES
@@ -122,9 +123,9 @@ def _fill(
 
 def _inputs(run: Path) -> list[str]:
     """Return the files that a run needs to go on, except checkpoints, by their path below the run."""
-    code = sorted(path for path in (run / CODE).rglob("*.py") if path.is_file())
-    paths = [run / name for name in INPUTS]
-    return [path.relative_to(run).as_posix() for path in (*paths, *code) if path.exists()]
+    held = (*(run / CODE).rglob("*.py"), *(run / FILES).rglob("*"))
+    paths = [*(run / name for name in INPUTS), *sorted(path for path in held if path.is_file())]
+    return [path.relative_to(run).as_posix() for path in paths if path.exists()]
 
 
 def no_whole_checkpoint(run: Path, faults: list[str]) -> Trouble:

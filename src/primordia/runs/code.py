@@ -100,7 +100,7 @@ def of_run(
         Trouble: the copy differs from the description.
     """
     folder, sources = run / FOLDER, Sources()
-    _check_files(folder, set(about.code))
+    check_files(folder, set(about.code))
     for part in parts:
         for module in (each.partition(":")[0] for each in config.code_of(part)):
             ways = [partial(own_code.below, folder, module), partial(own_code.found, module)]
@@ -114,7 +114,7 @@ def of_run(
     return Code(sources, _installed(config, parts))
 
 
-def _check_files(folder: Path, described: set[str]) -> None:
+def check_files(folder: Path, described: set[str]) -> None:
     """Raise Trouble unless the folder of a run's code holds exactly the described files."""
     if folder.is_symlink():
         raise Trouble(f"{folder} is a symbolic link; put the run's own folder in its place")

@@ -3,7 +3,9 @@
 The description is written into the run, so that records can be read without these parts' code.
 """
 
+from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -16,6 +18,7 @@ from primordia.runs import stored
 from primordia.settings.values import LARGEST
 
 FILE = "description.json"
+EMPTY: Mapping[str, str] = MappingProxyType({})
 
 
 class Description(BaseModel):
@@ -39,9 +42,20 @@ class Description(BaseModel):
     """shape of each block of weights in a genome"""
     code: dict[str, str] = Field({})
     """SHA-256 of each file of the user's own code, by its path below `code`"""
+    files: dict[str, str] = Field({})
+    """SHA-256 of each file that the habitat's settings name or need, by its path below `files`"""
+    files_from: str = ""
+    """the folder in which these files were found when the run began"""
 
     @classmethod
-    def of(cls, law: Law, habitat: AnyHabitat, code: dict[str, str]) -> "Description":
+    def of(
+        cls,
+        law: Law,
+        habitat: AnyHabitat,
+        code: dict[str, str],
+        files_from: str = "",
+        files: Mapping[str, str] = EMPTY,
+    ) -> "Description":
         """Return the description of a run."""
         return cls(
             rate=habitat.rate,
@@ -54,6 +68,8 @@ class Description(BaseModel):
             beginning=dict(law.beginning),
             blocks=dict(law.heredity.layout.blocks),
             code=code,
+            files=dict(files),
+            files_from=files_from,
         )
 
     def write(self, run: Path) -> None:

@@ -17,7 +17,7 @@ from primordia.brains import genomes
 from primordia.config import Config, parsed
 from primordia.errors import InputError, InUseError, Trouble
 from primordia.habitats.contract import AnyHabitat
-from primordia.runs import checkpoint, code, stored
+from primordia.runs import checkpoint, code, kept, stored
 from primordia.runs.description import Description
 from primordia.runs.manifest import INPUTS
 from primordia.runs.schema import TABLES
@@ -31,7 +31,7 @@ GLANCE = 0.05
 """Seconds to wait for a lock, since `is_written` in another process may hold it briefly."""
 UNBEGUN = f"{files.TEMPORARY}run"
 """The file that marks a directory in which a run is being started; other files are never removed."""
-OWN = (VERSIONS, *FOLDERS, code.FOLDER, checkpoint.ORIGIN, *INPUTS, LOCK)
+OWN = (VERSIONS, *FOLDERS, code.FOLDER, kept.FOLDER, checkpoint.ORIGIN, *INPUTS, LOCK)
 """The names in a new run's directory."""
 
 
@@ -66,7 +66,8 @@ def create(run: Path, config: Config, fill: Callable[[], object] | None = None) 
                 if (founders := law.heredity.ancestors) is not None:
                     genomes.write(run / genomes.FOUNDERS, law.heredity.layout, founders, {})
                     config = config.model_copy(update={"ancestors": (genomes.FOUNDERS,)})
-                Description.of(law, habitat, code.copy(config, run)).write(run)
+                own = code.copy(config, run), *kept.copy(config, habitat, run)
+                Description.of(law, habitat, *own).write(run)
                 files.write_text(run / "config.toml", config.to_toml())
                 if fill is not None:
                     fill()

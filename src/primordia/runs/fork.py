@@ -27,7 +27,7 @@ from primordia.runs.lives import Lives
 from primordia.runs.loop import Listener, Status, recorder_for
 from primordia.runs.manifest import Progress
 from primordia.settings.limits import ForkedFrom
-from primordia.settings.tables import from_toml, merged
+from primordia.settings.tables import from_toml, merged, replaced
 
 HARMLESS = {"stop", "fork", "about", "sample_every"}
 """Settings that do not change the course of a world."""
@@ -63,7 +63,7 @@ def fork(
     """
     _check_tick(source, at)
     source.admit()
-    changed = _fork_config(source.path, settings, at)
+    changed = _fork_config(source, settings, at)
     directory.refuse_if_taken(out)
     before = _engine_at(source, at, listen)
     living = _living(source.lives, before, source.config, at)
@@ -90,13 +90,16 @@ def _check_tick(source: Archive, at: int) -> None:
         )
 
 
-def _fork_config(source: Path, settings: dict[str, Any], at: int) -> Config:
+def _fork_config(source: Archive, settings: dict[str, Any], at: int) -> Config:
     """Return the configuration of the fork."""
     if "task" in settings:
         raise InputError("a fork keeps the task of its source; remove the setting 'task'")
-    values = merged(from_toml(source / "config.toml"), settings)
-    values["fork"] = ForkedFrom(run=str(bundle.origin_of(source)), tick=at).model_dump()
-    return validated(values, source=str(source))
+    values = from_toml(source.path / "config.toml")
+    for original, copy in source.config.kept.items():
+        values = replaced(values, original, copy)
+    values = merged(values, settings)
+    values["fork"] = ForkedFrom(run=str(bundle.origin_of(source.path)), tick=at).model_dump()
+    return validated(values, source=str(source.path))
 
 
 def _engine_at(source: Archive, at: int, listen: Listener | None) -> Engine:

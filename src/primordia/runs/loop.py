@@ -16,7 +16,6 @@ import numpy as np
 
 from primordia import interrupts
 from primordia.config import Config, checked
-from primordia.config import limits as valid_limits
 from primordia.engine.engine import Engine
 from primordia.engine.state import Limits
 from primordia.errors import InputError
@@ -27,6 +26,7 @@ from primordia.runs.checkpoint import Checkpoint
 from primordia.runs.manifest import Progress
 from primordia.runs.record import Recorder
 from primordia.runs.schema import Schema
+from primordia.settings import limits as stop
 
 EARLY = (1.0, 4.0, 10.0)
 """Seconds to wait before each early checkpoint; these let a run be read soon."""
@@ -117,7 +117,7 @@ def resume(
         Trouble: a file cannot be written, or no checkpoint is whole.
     """
     _check_interval(checkpoint_every)
-    given, archive = valid_limits(limits or {}), Archive(run)
+    given, archive = stop.checked(limits or {}), Archive(run)
     if archive.changed_code:
         _check_same(run, archive.changed_code, inexact)
         archive = Archive(run, edited=True)

@@ -12,15 +12,16 @@ from primordia import files
 from primordia.brains.genomes import FOUNDERS
 from primordia.runs.code import FOLDER as CODE
 from primordia.runs.description import FILE as DESCRIPTION
+from primordia.runs.kept import FOLDER as FILES
 from primordia.runs.schema import TABLES
 from primordia.settings.limits import Stop
 
 INPUTS = ("config.toml", DESCRIPTION, FOUNDERS)
-"""Files that a run needs to go on, except checkpoints and the user's own code."""
+"""Files that a run needs to go on, except checkpoints, own code, and files that settings name."""
 SEGMENT_ROWS = 2**20
 """Largest number of rows of a segment."""
 DEEPEST = 16
-"""Largest number of names in the path of a file of the user's own code, below the folder of code."""
+"""Largest number of names in the path of a file below the folder `code` or `files`."""
 MOST_INPUTS = 4096
 """Largest number of inputs. Each may need DEEPEST folders, which a bundle does not hold itself."""
 Word = Annotated[int, Field(ge=0, lt=2**64)]
@@ -28,7 +29,9 @@ Word = Annotated[int, Field(ge=0, lt=2**64)]
 
 def _is_input(name: str) -> str:
     folder, *parts = name.split("/")
-    if name not in INPUTS and (folder != CODE or not 0 < len(parts) <= DEEPEST or ".." in parts):
+    if name not in INPUTS and (
+        folder not in (CODE, FILES) or not 0 < len(parts) <= DEEPEST or ".." in parts
+    ):
         raise ValueError(f"{name} is not a file of a run")
     return name
 

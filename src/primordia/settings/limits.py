@@ -1,10 +1,13 @@
 """The limits of a run in time: the end of its worlds, and the tick of a fork."""
 
-from typing import Literal
+from typing import Any, Literal
 
-from pydantic import Field
+from pydantic import Field, ValidationError
 
+from primordia.errors import InputError
 from primordia.settings.base import UNREACHED, Settings
+from primordia.settings.fields import first_fault
+from primordia.settings.tables import NONE, replaced
 
 
 class Stop(Settings):
@@ -25,3 +28,17 @@ class ForkedFrom(Settings):
 
     run: str = Field(description="the run that was forked")
     tick: int = Field(ge=1, lt=UNREACHED, description="the tick after which the run was forked")
+
+
+def checked(values: dict[str, Any]) -> dict[str, Any]:
+    """Return settings of `Stop`, checked.
+
+    Raises:
+        InputError: a setting is unknown or out of range.
+    """
+    values = replaced(values, NONE, None)
+    try:
+        Stop.model_validate(values)
+    except ValidationError as error:
+        raise InputError(first_fault(error, Stop)) from None
+    return values

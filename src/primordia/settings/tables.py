@@ -136,13 +136,27 @@ def with_full_paths(folder: Path, values: dict[str, Any]) -> dict[str, Any]:
 
 
 def _full_paths(folder: Path, table: dict[str, Any]) -> dict[str, Any]:
-    """Return a table with the full path of each `file`, also in inner tables."""
+    """Return a table with full paths of files, also in inner tables."""
     changed = {}
     for name, value in table.items():
         file = folder / str(value)
-        full = str(file.resolve()) if name == "file" and isfile(file) else value
+        full = str(file.resolve()) if _names_file(name) and isfile(file) else value
         changed[name] = _full_paths(folder, value) if isinstance(value, dict) else full
     return changed
+
+
+def files_in(table: dict[str, Any]) -> list[str]:
+    """Return the values of a table that name files, also in inner tables."""
+    inner = [
+        each for value in table.values() if isinstance(value, dict) for each in files_in(value)
+    ]
+    own = (value for name, value in table.items() if _names_file(name))
+    return inner + [value for value in own if isinstance(value, str)]
+
+
+def _names_file(setting: str) -> bool:
+    """Return whether a setting of a habitat names a file: `file`, or a name such as `map_file`."""
+    return setting == "file" or setting.endswith("_file")
 
 
 def replaced(values: Any, old: Any, new: Any) -> Any:

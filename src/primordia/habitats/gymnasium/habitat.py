@@ -80,6 +80,13 @@ class Gymnasium(HostHabitat, Settings):
     """ticks lived, int64 (N,)"""
     _failed: int = PrivateAttr(0)
 
+    @staticmethod
+    def files_with(file: str) -> list[str]:
+        """Return the full paths of a file, and of the files that it needs if it is a model of MuJoCo."""
+        from primordia.habitats.mujoco.simulator import needed_files
+
+        return needed_files(file) if file.endswith(".xml") else [file]
+
     @model_validator(mode="after")
     def _check_settings(self) -> "Gymnasium":
         assert self._conditions

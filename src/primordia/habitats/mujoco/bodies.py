@@ -6,10 +6,14 @@ from typing import Any
 import numpy as np
 
 from primordia import cores
-from primordia.habitats.mujoco.simulator import ROOT, ids_by_name, package
+from primordia.habitats.mujoco.simulator import FORCES, ROOT, ids_by_name, package, sensors
 
 DERIVED = {"xpos", "site", "height", "pitch", "travelled", "com_forward", "reached"}
-"""Observables that MuJoCo derives from the state after a step."""
+"""Observables that MuJoCo derives from the positions after a step."""
+SENSED = {"sensordata", "sensor"}
+"""Observables that sensors measure after a step."""
+STATE = ("qpos", "qvel", "ctrl", "act", "time")
+"""Observables that are parts of the state."""
 
 
 class Bodies:
@@ -20,7 +24,7 @@ class Bodies:
         # With one thread the batch starts none: the calling thread steps the bodies.
         self.batch = package().batch.Batch(model, cells, nthread=cores.count())
         bind, wanted = self.batch.bind, set(observed)
-        self.views: dict[str, Any] = {name: bind(name) for name in ("qpos", "qvel", "ctrl")}
+        self.views: dict[str, Any] = {name: bind(name) for name in STATE}
         """Views of the bodies' state by name, which change as the bodies do"""
         if wanted & {"xpos", "reached"}:
             xpos, bodies = bind("xpos"), ids_by_name(model, "body")
@@ -32,15 +36,22 @@ class Bodies:
             self.views["height"] = bind("xpos")[:, ROOT, 2]
         if "pitch" in wanted:
             self.views["rotation"] = bind("xmat")[:, ROOT]
+        if "cfrc_ext" in wanted:
+            forces, bodies = bind("cfrc_ext"), ids_by_name(model, "body")
+            self.views["cfrc_ext"] = {name: forces[:, number] for name, number in bodies.items()}
+        if wanted & SENSED:
+            columns = sensors(model)
+            data = bind("sensordata")[:, : columns.pop(FORCES, slice(None)).start]
+            self.views["sensordata"] = data
+            self.views["sensor"] = {name: data[:, each] for name, each in columns.items()}
         self._tracked: dict[str, np.ndarray] = {}
         """Views of the positions whose displacement in a tick is observed"""
         if "forward" in wanted:
             self._tracked["forward"] = self.views["qpos"][:, 0]
         if wanted & {"travelled", "com_forward"}:
             self._tracked["com"] = bind("subtree_com")[:, 0, :2]
-        stages = package().mjtStage
-        self._stage = stages.mjSTAGE_POS if wanted & DERIVED else stages.mjSTAGE_NONE
-        """derived quantities that MuJoCo computes after a step: positions if observed, else none"""
+        self._stage = _stage(model, wanted)
+        """the stage up to which MuJoCo computes derived quantities after a step"""
 
     def step(self, alive: np.ndarray, substeps: int) -> np.ndarray:
         """Step the bodies of the living, and return those whose simulation failed, bool (N,)."""
@@ -74,3 +85,19 @@ class Bodies:
         self.batch.state[:] = state
         if self._stage:
             self.batch.forward(stage=self._stage)
+
+
+def _stage(model: Any, wanted: Collection[str]) -> Any:
+    """Return the first stage of MuJoCo after which all observables are computed.
+
+    Forces and accelerations are those of the new state with the controls of the tick that led to it.
+    """
+    stages = package().mjtStage
+    needed = [stages.mjSTAGE_NONE]
+    if DERIVED & set(wanted):
+        needed.append(stages.mjSTAGE_POS)
+    if SENSED & set(wanted):
+        needed += [stages(each) for each in model.sensor_needstage]
+    if "cfrc_ext" in wanted:
+        needed.append(stages.mjSTAGE_ACC)
+    return max(needed, key=int)

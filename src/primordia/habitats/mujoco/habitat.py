@@ -21,6 +21,7 @@ from primordia.habitats.mujoco.bodies import Bodies
 from primordia.habitats.mujoco.simulator import (
     fingerprint,
     load_model,
+    needed_files,
     observables,
     package,
     root_translates,
@@ -87,6 +88,11 @@ class MuJoCo(HostHabitat, Settings):
             self.target.check(self._model)
         return self
 
+    @staticmethod
+    def files_with(file: str) -> list[str]:
+        """Return the full paths of a model's file and of all files that it needs."""
+        return needed_files(file)
+
     @cached_property
     def _model(self) -> Any:
         return load_model(self.file, self.timestep)
@@ -122,8 +128,8 @@ class MuJoCo(HostHabitat, Settings):
 
     @property
     def versions(self) -> dict[str, str]:
-        """Version of MuJoCo, and the fingerprint of the model."""
-        return {"mujoco": version("mujoco"), Path(self.file).name: fingerprint(self._model)}
+        """Version of MuJoCo, and the fingerprint of the model's files."""
+        return {"mujoco": version("mujoco"), Path(self.file).name: fingerprint(self.file)}
 
     @property
     def senses_size(self) -> int:
@@ -149,7 +155,10 @@ class MuJoCo(HostHabitat, Settings):
 
     def open(self, cells: int, watched: bool = False) -> None:
         """Allocate the bodies."""
-        self._bodies = Bodies(self._model, cells, self._observed)
+        model = self._model
+        if "cfrc_ext" in self._observed:
+            model = load_model(self.file, self.timestep, forces=True)
+        self._bodies = Bodies(model, cells, self._observed)
         self._dice = np.zeros(cells, np.uint64)
 
     def reset(self, cells: np.ndarray, words: np.ndarray) -> np.ndarray:

@@ -1,14 +1,13 @@
 """MuJoCo's models: how they are loaded, and their observables."""
 
 import hashlib
+import warnings
 from functools import cache
 from importlib import import_module
 from importlib.resources import files
-from os.path import isfile  # false, not an error, for a name that is too long
+from os.path import abspath, isfile, relpath  # false, not an error, for a name that is too long
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from primordia.habitats.conditions import Names
 
@@ -16,6 +15,8 @@ GYMNASIUM = "gymnasium:"
 """Prefix of the names of files that come with Gymnasium."""
 ROOT = 1
 """The robot's first body; body 0 is the world."""
+FORCES = "primordia: forces"
+"""The name of the sensor and the site that `load_model` may add"""
 NOT_INSTALLED = "robots need MuJoCo and Gymnasium's models: pip install 'primordia[mujoco]'"
 
 
@@ -42,8 +43,14 @@ def package() -> Any:
     return mujoco
 
 
-def load_model(file: str, timestep: float | None) -> Any:
-    """Return the MjModel of an MJCF file, with another timestep in seconds if one is given.
+def load_model(file: str, timestep: float | None, forces: bool = False) -> Any:
+    """Return the MjModel of an MJCF file.
+
+    Args:
+        file: an MJCF file, or gymnasium:NAME.xml.
+        timestep: another timestep in seconds, or None.
+        forces: let MuJoCo compute `cfrc_ext`, which it does only for models with a sensor of forces. The
+            sensor FORCES is added as the last, on a site of the robot's first body.
 
     Raises:
         ValueError: there is no such file, MuJoCo does not accept it, or it has no actuators.
@@ -52,7 +59,7 @@ def load_model(file: str, timestep: float | None) -> Any:
     if not isfile(path):
         raise ValueError(f"file: there is no {path}")
     try:
-        model = package().MjModel.from_xml_path(str(path))
+        model = package().MjModel.from_xml_path(str(path)) if not forces else _with_forces(path)
     except ValueError as error:
         raise ValueError(f"file: {path}: {' '.join(str(error).split())}") from None
     if not model.nu:
@@ -64,12 +71,40 @@ def load_model(file: str, timestep: float | None) -> Any:
     return model
 
 
-def fingerprint(model: Any) -> str:
-    """Return twelve digits of the SHA-256 of a compiled model, with its meshes."""
-    mujoco = package()
-    binary = np.zeros(mujoco.mj_sizeModel(model), np.uint8)
-    mujoco.mj_saveModel(model, None, binary)
-    return f"sha256 {hashlib.sha256(binary.tobytes()).hexdigest()[:12]}"
+def _spec(file: str | Path) -> Any:
+    """Return the MjSpec of an MJCF file, without warnings of what MuJoCo will no longer accept."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return package().MjSpec.from_file(str(file))
+
+
+def _with_forces(file: Path) -> Any:
+    """Return a model with a sensor of forces on the robot's first body."""
+    spec, mujoco = _spec(file), package()
+    spec.bodies[ROOT].add_site(name=FORCES)
+    kind, on = mujoco.mjtSensor.mjSENS_FORCE, mujoco.mjtObj.mjOBJ_SITE
+    spec.add_sensor(name=FORCES, type=kind, objtype=on, objname=FORCES)
+    return spec.compile()
+
+
+def needed_files(file: str) -> list[str]:
+    """Return the full paths of an MJCF file, and of its includes, meshes, textures and height fields."""
+    known, spec = package().mju_getXMLDependencies(file), _spec(file)
+    # MuJoCo 3.17 looks for height fields in `meshdir`, but its list of dependencies leaves this out.
+    fields = [Path(file).parent / spec.meshdir / each.file for each in spec.hfields if each.file]
+    return sorted({abspath(each) for each in (*known, *fields) if isfile(each)})
+
+
+def fingerprint(file: str) -> str:
+    """Return twelve digits of a SHA-256 of an MJCF file and all files that it needs, wherever they are.
+
+    A compiled model holds full paths, so the same model differs from place to place.
+    """
+    path, digest = _path(file), hashlib.sha256()
+    for each in needed_files(str(path)):
+        content = hashlib.sha256(Path(each).read_bytes()).hexdigest()
+        digest.update(f"{relpath(each, path.parent)} {content}\n".encode())
+    return f"sha256 {digest.hexdigest()[:12]}"
 
 
 def _path(file: str) -> Path:
@@ -95,8 +130,17 @@ def root_translates(model: Any) -> bool:
     return bool(model.jnt_type[0] != package().mjtJoint.mjJNT_HINGE)
 
 
+def sensors(model: Any) -> dict[str, slice]:
+    """Return the columns of `sensordata` of each sensor that has a name."""
+    each = [model.sensor(i) for i in range(model.nsensor)]
+    begin = {one.name: int(one.adr[0]) for one in each if one.name}
+    return {name: slice(i, i + int(model.sensor(name).dim[0])) for name, i in begin.items()}
+
+
 def observables(model: Any) -> Names:
     """Return the names that expressions in settings can use, except those of a target."""
+    sensed = {name: each.stop - each.start for name, each in sensors(model).items()}
+    of_some_models = {"act": model.na, "sensordata": model.nsensordata, "sensor": sensed}
     return {
         "qpos": model.nq,
         "qvel": model.nv,
@@ -108,4 +152,7 @@ def observables(model: Any) -> Names:
         "forward": "amount",
         "travelled": "amount",
         "com_forward": "amount",
+        "time": "amount",
+        "cfrc_ext": dict.fromkeys(ids_by_name(model, "body"), 6),
+        **{name: kind for name, kind in of_some_models.items() if kind},
     }

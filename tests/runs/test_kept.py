@@ -1,0 +1,187 @@
+"""A run holds the files that its settings name, and its lives use them."""
+
+import hashlib
+import shutil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import primordia
+from primordia.errors import InputError, Trouble
+from primordia.runs.archive import Archive
+from primordia.runs.kept import FOLDER
+from tests.commands import complains, here
+from tests.robots import LEG, SENSES, write_model
+
+pytest.importorskip("mujoco")
+
+TASK = f"""
+task = "walker"
+cells = 4
+replication = 0.2
+stop = {{ ticks = 30 }}
+
+[habitat]
+name = "mujoco"
+file = "walker.xml"
+senses = {SENSES}
+position_noise = 0.05
+fatal = "qpos[2] < 0.35"
+food = "travelled"
+"""
+NEEDED = [
+    "parts/leg.xml",
+    "parts/shapes/foot.obj",
+    "parts/shapes/ground.png",
+    "parts/skin.png",
+    "walker.xml",
+]
+
+
+def begun(folder: Path) -> Path:
+    """Begin a run of a model in a folder of its own."""
+    source = folder / "model"
+    source.mkdir()
+    write_model(source)
+    (source / "walker.toml").write_text(TASK)
+    return primordia.run(str(source / "walker.toml"), folder / "run").path
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return begun(tmp_path_factory.mktemp("kept"))
+
+
+def test_a_bundle_is_lived_again_without_the_original_files(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = primordia.load(begun(tmp_path)).bundle(tmp_path / "sent.zip")
+    shutil.rmtree(tmp_path / "model")
+    shutil.rmtree(tmp_path / "run")
+    monkeypatch.chdir(tmp_path)
+    assert here("unbundle", file, "theirs").returncode == 0
+    assert here("verify", "theirs").returncode == 0
+    assert here("revive", "theirs", 0).returncode == 0
+    assert here("replay", "theirs", "--organism", 0, "--out", "film.mp4").returncode == 0
+    assert (tmp_path / "film.mp4").stat().st_size > 1000
+    assert here("evaluate", "theirs", "--games", 1, "--ticks", 5).returncode == 0
+    assert here("fork", "theirs", "--at", 20, "--ticks", 40, "--out", "other").returncode == 0
+    assert here("verify", "other").returncode == 0
+    assert here("resume", "theirs", "--ticks", 40).returncode == 0
+    assert primordia.load("theirs").info()["exact"]
+    assert primordia.load("theirs").verify() == []
+
+
+def test_a_run_holds_the_file_with_all_that_it_needs(run: Path) -> None:
+    assert list(Archive(run).description.files) == NEEDED
+    assert sorted(
+        path.relative_to(run / FOLDER).as_posix()
+        for path in (run / FOLDER).rglob("*")
+        if path.is_file()
+    ) == sorted(NEEDED)
+
+
+def test_a_changed_original_stops_a_run_and_is_used_if_the_user_asks(tmp_path: Path) -> None:
+    run = begun(tmp_path)
+    leg = tmp_path / "model" / "parts" / "leg.xml"
+    leg.write_text(leg.read_text().replace("0.1", "0.3"))
+    complains(here("resume", run, "--ticks", 35), 2, f"{leg} has changed", "--inexact")
+    assert primordia.load(run).verify() == [], "the run's own copy is used"
+    done = here("resume", run, "--ticks", 35, "--inexact")
+    assert done.returncode == 0, done.stderr
+    assert not primordia.load(run).info()["exact"]
+
+
+@pytest.mark.parametrize("name", ["walker.xml", "parts/skin.png"])
+def test_a_changed_copy_is_damage(run: Path, name: str, tmp_path: Path) -> None:
+    copy = tmp_path / "run"
+    shutil.copytree(run, copy)
+    path = copy / FOLDER / name
+    path.write_bytes(path.read_bytes() + b" ")
+    complains(here("verify", copy), 1, str(path))
+    path.unlink()
+    complains(here("verify", copy), 1, name)
+
+
+def test_a_run_is_not_lived_with_files_from_outside(run: Path, tmp_path: Path) -> None:
+    """A forged run whose model includes a file that the run does not hold."""
+    copy = tmp_path / "run"
+    shutil.copytree(run, copy)
+    (tmp_path / "secret.xml").write_text(LEG)
+    model, about = copy / FOLDER / "walker.xml", copy / "description.json"
+    before = Archive(copy).description.files["walker.xml"]
+    model.write_text(model.read_text().replace("parts/leg.xml", "../../secret.xml"))
+    about.write_text(
+        about.read_text().replace(before, hashlib.sha256(model.read_bytes()).hexdigest())
+    )
+    with pytest.raises(Trouble, match=r"does not hold .*secret.xml"):
+        Archive(copy).habitat  # noqa: B018, which is built here
+
+
+def test_a_file_named_by_its_full_path_in_another_is_refused(tmp_path: Path) -> None:
+    file = write_model(tmp_path / "model")
+    leg = tmp_path / "model" / "parts" / "leg.xml"
+    file.write_text(file.read_text().replace("parts/leg.xml", str(leg)))
+    habitat = {"file": str(file), "senses": ["qpos"]}
+    with pytest.raises(InputError, match="named by its full path"):
+        primordia.run("HalfCheetah-forager", tmp_path / "run", habitat=habitat)
+    assert not (tmp_path / "run").exists()
+
+
+def test_runs_of_one_model_are_one_arm(run: Path, tmp_path: Path) -> None:
+    task = run.parent / "model" / "walker.toml"
+    for seed in (4, 5):
+        primordia.run(str(task), tmp_path / "arm" / f"seed{seed}", seed=seed)
+    found = primordia.load(tmp_path / "arm").info()["worlds"]
+    assert [world["seed"] for world in found] == [4, 5]
+
+
+MAP = """
+import numpy as np
+from primordia.habitats import Discrete, HostHabitat, Outcome
+from primordia.settings.base import Settings
+
+
+class Maze(HostHabitat, Settings):
+    map_file: str
+    senses_size: int = 1
+    action: Discrete = Discrete(2)
+    words: int = 1
+
+    def open(self, cells, watched=False):
+        self._map = np.loadtxt(self.map_file)
+
+    def reset(self, cells, words):
+        return np.full((len(cells), 1), self._map.sum(), np.float32)
+
+    def step(self, action, alive):
+        count = len(alive)
+        return np.full((count, 1), self._map.sum(), np.float32), Outcome(np.zeros(count, bool))
+
+    def save(self):
+        return {}
+
+    def load(self, arrays):
+        pass
+"""
+
+
+def test_a_habitat_of_ones_own_names_a_file_by_the_name_of_its_setting(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "maze.py").write_text(MAP)
+    (tmp_path / "map.txt").write_text("1 2\n3 4\n")
+    (tmp_path / "maze.toml").write_text(
+        'task = "maze"\ncells = 3\nstop = { ticks = 5 }\n'
+        'habitat = { name = "maze:Maze", map_file = "map.txt" }\n'
+    )
+    run = primordia.run("maze.toml", "run")
+    (tmp_path / "map.txt").unlink()
+    assert (tmp_path / "run" / FOLDER / "map.txt").read_text() == "1 2\n3 4\n"
+    assert run.verify() == []
+    habitat: Any = Archive(run.path).habitat
+    habitat.open(1)
+    assert np.array_equal(habitat._map, [[1, 2], [3, 4]])
