@@ -84,3 +84,18 @@ def test_rounding_changes_no_other_number() -> None:
     np.testing.assert_array_equal(product, plain)
     np.testing.assert_array_equal(np.signbit(product)[:2], [False, True])
     np.testing.assert_array_equal(squares, whole * whole + 1)
+
+
+def test_a_mapped_loop_ends_for_each_by_itself() -> None:
+    """Each has its own number of steps; JAX maps such a loop over many in a form of its own."""
+    start = np.float32([[0.5, 7.0, 11.0], [3.0, 12.0, 0.1]])
+
+    def grown(x: Any) -> Any:
+        return lax.while_loop(lambda x: x[0] < 9, lambda x: (x[0] * 1.7 + 0.3, x[1] + 1), (x, 0))
+
+    sizes, steps = jit(jax.vmap(jax.vmap(grown)))(start)
+    for x, size, count in zip(start.ravel(), sizes.ravel(), steps.ravel(), strict=True):
+        taken = 0
+        while x < 9:
+            x, taken = x * np.float32(1.7) + np.float32(0.3), taken + 1
+        assert (size, count) == (x, taken)

@@ -102,11 +102,23 @@ class _Rewriter:
         carried = len(equation.outvars)
         ends = len(_opened(condition)[0].invars) - carried
         begins = len(inputs) - carried
-        return lax.while_loop(
-            lambda carry: self(condition, *inputs[:ends], *carry)[0],
-            lambda carry: self(body, *inputs[ends:begins], *carry),
-            inputs[begins:],
-        )
+
+        def goes_on(carry: list[Any]) -> Array:
+            return self(condition, *inputs[:ends], *carry)[0]
+
+        def step(carry: list[Any]) -> list[Any]:
+            return self(body, *inputs[ends:begins], *carry)
+
+        def step_those_that_go_on(carry: list[Any]) -> list[Any]:
+            going = goes_on(carry)
+            pairs = zip(step(carry), carry, strict=True)
+            return [lax.select(_spread(going, old.shape), new, old) for new, old in pairs]
+
+        if _opened(condition)[0].outvars[0].aval.shape:  # a loop that was mapped over many
+            return lax.while_loop(
+                lambda carry: goes_on(carry).any(), step_those_that_go_on, inputs[begins:]
+            )
+        return lax.while_loop(goes_on, step, inputs[begins:])
 
     def _scan(self, equation: JaxprEqn, inputs: list[Any]) -> list[Any]:
         body, inner = equation.params["jaxpr"], _opened(equation.params["jaxpr"])[0]
@@ -138,6 +150,11 @@ def _functions(equation: JaxprEqn) -> Iterator[Any]:
 
 def _shapes(variables: Sequence[Any]) -> list[tuple]:
     return [(each.aval.shape, each.aval.dtype) for each in variables]
+
+
+def _spread(mask: Array, shape: tuple[int, ...]) -> Array:
+    """Return a mask of the first axes of an array for all of the array's elements."""
+    return lax.broadcast_in_dim(mask, shape, range(mask.ndim))
 
 
 def _unsliced(outside: Sequence[Any], inside: Sequence[Any]) -> int:

@@ -22,7 +22,7 @@ RUN, OUT = Path("RUN"), Path("OUT")
 @pytest.fixture
 def opened() -> Iterator[MagicMock]:
     """Replace the records of any run. The row of an organism is 100 times its world plus its number."""
-    records = MagicMock(paths=(RUN,))
+    records = MagicMock(paths=(RUN,), versions={"device": "cpu"})
     lives = records.lives
     lives.row = lambda organism, world: 100 * world + organism
     lives.oldest = lambda world=None, after=0.5: 100 * (9 if world is None else world) + 10 * after
@@ -169,7 +169,7 @@ def test_a_run_is_verified_on_the_device_and_with_the_listener_that_are_given(
     ):
         assert primordia.Run(RUN).verify("gpu", print) is verify.return_value
     verify.assert_called_once_with(opened, print)
-    selected.assert_called_once_with("gpu")
+    selected.assert_called_once_with("gpu", "cpu")
 
 
 def test_dashboards_get_the_folders_and_options_that_are_given() -> None:
@@ -205,11 +205,11 @@ def test_a_run_goes_on_with_the_limits_and_the_interval_that_are_given(opened: M
         own: dict[str, Any] = {"checkpoint_every": 7.0, "listen": print}
         primordia.Run(RUN).resume(inexact=True, device="gpu", ticks=9, until="none", **own)
         resume.assert_called_once_with(RUN, {"ticks": 9, "until": "none"}, inexact=True, **own)
-        selected.assert_called_once_with("gpu")
+        selected.assert_called_once_with("gpu", "cpu")
         made = primordia.Run(RUN).fork(9, "OUT", {"seed": 3}, device="gpu", hazard=0.5, **own)
         fork.assert_called_once_with(opened, 9, OUT, {"seed": 3, "hazard": 0.5}, print)
         assert resume.call_args == call(OUT, **own)
-        assert selected.call_args_list == [call("gpu")] * 2
+        assert selected.call_args_list == [call("gpu", "cpu")] * 2
         assert made.path == OUT
 
 

@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from primordia.brains.layout import Layout
+from primordia.compiled import jit
 from primordia.mutations.calibrated import Calibrated
 from primordia.mutations.contract import Draws, Family
 from primordia.mutations.gaussian import Block, Gaussian
@@ -212,7 +213,7 @@ def test_children_are_those_of_numpy_bit_for_bit(
 def test_children_made_in_a_compiled_function_have_the_same_bits() -> None:
     parents = np.random.default_rng(1).normal(size=(K, P)).astype(np.float32)
     draws, notes = Draws(drawn(), jnp.arange(K)), jnp.zeros((K, 0), jnp.int32)
-    inherit = jax.jit(lambda family: Gaussian().inherit(LAYOUT, family))
+    inherit = jit(lambda family: Gaussian().inherit(LAYOUT, family))
     made, _ = inherit(Family(jnp.asarray(parents), notes, rates(LAYOUT, 0.5, 0.3, K), draws))
     same_bits(np.asarray(made), children(LAYOUT, parents, 0.5, 0.3)[0])
 

@@ -16,6 +16,7 @@ from primordia.organism.reliving.relived import RelivedLife
 from primordia.organism.revival import Respect, Revival
 from primordia.runs import checkpoint, directory
 
+A_RUN = MagicMock(versions={"device": "cpu"})
 KEPT = ({"ticks": [9, 1200]}, {"ticks": [9, 1100]}, {"ticks": [9, 60]})
 """States of a run of two worlds, newest first; the first world has stopped at tick 9."""
 
@@ -164,7 +165,7 @@ def test_the_result_says_whether_a_life_began_with_birth_fork_or_checkpoint(
     stored: Any, since: int | None, begin: str, again: MagicMock
 ) -> None:
     again.life.stored = stored
-    found = revival.revive(MagicMock(), 3, 7, since=since)
+    found = revival.revive(A_RUN, 3, 7, since=since)
     assert (found.organism, found.world) == (3, 7)
     assert (found.begin, found.begins, found.ends) == (begin, 60, 90)
     assert again.stored.call_args == call("a run", 3, 1, since)
@@ -181,7 +182,7 @@ def test_only_a_life_that_agrees_in_all_respects_is_filmed(
 ) -> None:
     """A value that the relived life lacks differs, too. The life is saved in each case."""
     again.recorded.return_value = recorded
-    found = revival.revive(MagicMock(), 3, 7, save=save, film=Path("b.gif"))
+    found = revival.revive(A_RUN, 3, 7, save=save, film=Path("b.gif"))
     assert again.lived.call_args == call(again.life, save)
     saved = [] if save is None else [save]
     if recorded == {"tick": 90, "food": 2}:
@@ -199,7 +200,7 @@ def test_only_a_life_that_lost_its_body_cannot_be_lived_again(
 ) -> None:
     again.life.cause, again.life.record = cause, SimpleNamespace(id=[3])
     if cause is not Cause.RESTART:
-        assert revival.revive(MagicMock(), 3, 7).agrees
+        assert revival.revive(A_RUN, 3, 7).agrees
         return
     with pytest.raises(InputError, match=r"^organism 3 ended when its run was resumed"):
-        revival.revive(MagicMock(), 3, 7)
+        revival.revive(A_RUN, 3, 7)

@@ -103,16 +103,16 @@ def test_a_run_of_other_versions_is_resumed_on_request_only(
 ) -> None:
     ((name, value),) = change.items()
     change_versions(run, **change)
-    before = contents(run)
-    complains(here("resume", run), 2, str(run), f"{name} {value} then", "now", "--inexact")
+    before, on = contents(run), ("--device", "cpu")
+    complains(here("resume", run, *on), 2, str(run), f"{name} {value} then", "now", "--inexact")
     assert contents(run) == before
-    done = here("verify", run)
+    done = here("verify", run, *on)
     assert (done.returncode, done.stderr) == (0, ""), "the result was the same in spite of that"
-    goes_on(run, through, "--inexact")
+    goes_on(run, through, "--inexact", *on)
     assert json.loads(here("info", run, "--json").stdout)["exact"] is False
     assert "not exact" in here("info", run).stdout
-    complains(here("resume", run), 2, "--inexact")
-    complains(here("verify", run), 2, str(run), "not exact")
+    complains(here("resume", run, *on), 2, "--inexact")
+    complains(here("verify", run, *on), 2, str(run), "not exact")
 
 
 def test_verify_says_what_differs_and_a_possible_reason(run: Path) -> None:
