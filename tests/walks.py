@@ -137,7 +137,7 @@ class Counting(Walk):
 
     def step_env(self, key: Any, state: Any, action: Any, params: Params) -> tuple[Any, ...]:
         Counting.calls += 1
-        return super().step_env(key, state, action * 0.01 * Counting.calls, params)
+        return super().step_env(key, state, action * 0.001 * Counting.calls, params)
 
 
 class Overwriting(Walk):

@@ -15,8 +15,8 @@ import jax.numpy as jnp
 from jax import Array, lax
 from jax.extend.core import ClosedJaxpr, Jaxpr, JaxprEqn, Literal
 
-Rule: TypeAlias = Callable[[JaxprEqn, list[Any]], Array]
-"""Return the output of an equation for its inputs."""
+Rule: TypeAlias = Callable[[JaxprEqn, list[Any], list[bool]], Array]
+"""Return the output of an equation for its inputs, given which of these are constants."""
 FLOAT32 = jnp.dtype(jnp.float32)
 
 
@@ -53,6 +53,8 @@ class _Rewriter:
 
     def __init__(self, rules: Mapping[str, Rule]) -> None:
         self._rules = rules
+        self._constants: dict[int, Any] = {}
+        """Traced values that follow from constants alone, by identity"""
 
     def __call__(self, function: Any, *arguments: Any) -> list[Any]:
         """Return the outputs of a function for these arguments."""
@@ -64,16 +66,22 @@ class _Rewriter:
 
         for equation in jaxpr.eqns:
             inputs = [read(each) for each in equation.invars]
+            constant = [self._is_constant(each) for each in inputs]
             if self._has_rule(equation):
-                outputs = [self._rules[equation.primitive.name](equation, inputs)]
+                outputs = [self._rules[equation.primitive.name](equation, inputs, constant)]
             else:
                 outputs = self._apply(equation, inputs)
+            if all(constant):
+                self._constants |= {id(each): each for each in outputs}
             values.update(zip(equation.outvars, outputs, strict=True))
         return [read(variable) for variable in jaxpr.outvars]
 
     def _has_rule(self, equation: JaxprEqn) -> bool:
         named = equation.primitive.name in self._rules
         return named and getattr(equation.outvars[0].aval, "dtype", None) == FLOAT32
+
+    def _is_constant(self, value: Any) -> bool:
+        return id(value) in self._constants or not isinstance(value, jax.core.Tracer)
 
     def _concerns(self, function: Any) -> bool:
         """Return whether a function has an operation with a rule, at any depth."""
@@ -94,8 +102,10 @@ class _Rewriter:
         return outputs if equation.primitive.multiple_results else [outputs]
 
     def _cond(self, equation: JaxprEqn, inputs: list[Any]) -> list[Any]:
-        branches = [partial(self, branch) for branch in equation.params["branches"]]
-        return lax.switch(inputs[0], branches, *inputs[1:])
+        index, *given = inputs  # the branches close over what is given: constants stay constants
+        return lax.switch(
+            index, [partial(self, each, *given) for each in equation.params["branches"]]
+        )
 
     def _while(self, equation: JaxprEqn, inputs: list[Any]) -> list[Any]:
         condition, body = equation.params["cond_jaxpr"], equation.params["body_jaxpr"]
@@ -114,7 +124,7 @@ class _Rewriter:
             pairs = zip(step(carry), carry, strict=True)
             return [lax.select(_spread(going, old.shape), new, old) for new, old in pairs]
 
-        if _opened(condition)[0].outvars[0].aval.shape:  # a loop that was mapped over many
+        if _shapes(_opened(condition)[0].outvars)[0][0]:  # a loop that was mapped over many
             return lax.while_loop(
                 lambda carry: goes_on(carry).any(), step_those_that_go_on, inputs[begins:]
             )

@@ -57,6 +57,9 @@ class Walked:
     words, action = 2, Discrete(3)
     simulator = SimpleNamespace(changes_state=lambda: False, repeats=lambda: True)
 
+    def reset(self, words: Any) -> Any:
+        return words
+
 
 def test_the_lifespan_is_the_mean_of_all_lives_also_of_those_that_go_on(
     monkeypatch: pytest.MonkeyPatch,

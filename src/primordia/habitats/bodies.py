@@ -8,11 +8,20 @@ from jax import Array
 from primordia.compiled import shared
 from primordia.habitats.contract import Bodies, JaxHabitat
 
+MADE = 32
+"""Number of bodies that `fresh_bodies` makes. Each number would be compiled separately, which takes half
+a minute for bodies of MJX."""
+
+
+def fresh_bodies(habitat: JaxHabitat, words: np.ndarray) -> Bodies:
+    """Return fresh bodies from words uint32 (MADE, words), outside a world."""
+    return shared(type(habitat).reset, habitat)(words)
+
 
 def placeholder_bodies(habitat: JaxHabitat, cells: int) -> Bodies:
     """Return the bodies of cells before the first birth: copies of one body that is made from zeros."""
-    body = shared(type(habitat).reset, habitat)(np.zeros((1, habitat.words), np.uint32))
-    return jax.tree.map(lambda leaf: jnp.repeat(leaf, cells, axis=0), body)
+    made = fresh_bodies(habitat, np.zeros((MADE, habitat.words), np.uint32))
+    return jax.tree.map(lambda leaf: jnp.repeat(leaf[:1], cells, axis=0), made)
 
 
 def insert_bodies(bodies: Bodies, cells: Array, new: Bodies) -> Bodies:

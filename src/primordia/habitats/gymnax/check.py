@@ -9,11 +9,12 @@ import numpy as np
 from jax import Array, lax
 
 from primordia.compiled import shared
+from primordia.habitats.bodies import MADE, fresh_bodies
 from primordia.habitats.contract import Discrete
 from primordia.habitats.gymnax.habitat import Body, Gymnax
 from primordia.random import trials
 
-BODIES, TICKS = 32, 500
+BODIES, TICKS = MADE, 500
 """Number of lives, and largest number of ticks of each."""
 
 
@@ -49,15 +50,16 @@ class _Seen(NamedTuple):
 
 def measure(habitat: Gymnax) -> Measured:
     """Let bodies act at random, and trace the environment's functions twice."""
-    words = trials.words(0, BODIES, habitat.words)
-    seen = jax.tree.map(np.asarray, shared(_lived, habitat)(words, _actions(habitat)))
+    repeats = habitat.simulator.repeats()  # first, since it clears JAX's caches
+    born = fresh_bodies(habitat, trials.words(0, BODIES, habitat.words))
+    seen = jax.tree.map(np.asarray, shared(_lived, habitat)(born, _actions(habitat)))
     wrong = {
         "an observation is not finite": not seen.finite.all(),
         "an observation is outside the declared space": not seen.inside.all(),
         "a reward is not finite": not seen.rewarded.all(),
         "step changes the state that it is given": habitat.simulator.changes_state(),
         "functions of the environment differ when traced again: they take randomness from outside JAX, "
-        "or keep something between calls": not habitat.simulator.repeats(),
+        "or keep something between calls": not repeats,
     }
     return Measured(
         lifespan=seen.alive.sum(axis=0).mean(),
@@ -67,8 +69,8 @@ def measure(habitat: Gymnax) -> Measured:
     )
 
 
-def _lived(habitat: Gymnax, words: Array, actions: Array) -> _Seen:
-    """Return the record of each tick of lives from words uint32 (N, 2)."""
+def _lived(habitat: Gymnax, born: Body, actions: Array) -> _Seen:
+    """Return the record of each tick of the lives of N fresh bodies."""
 
     def tick(carry: tuple[Body, Array], action: Array) -> tuple[tuple[Body, Array], _Seen]:
         bodies, alive = carry
@@ -76,7 +78,7 @@ def _lived(habitat: Gymnax, words: Array, actions: Array) -> _Seen:
         seen = _seen(habitat, values, alive)
         return (bodies, alive & ~seen.done), seen
 
-    return lax.scan(tick, (habitat.reset(words), jnp.ones(len(words), bool)), actions)[1]
+    return lax.scan(tick, (born, jnp.ones(BODIES, bool)), actions)[1]
 
 
 def _seen(habitat: Gymnax, values: dict[str, Any], alive: Array) -> _Seen:

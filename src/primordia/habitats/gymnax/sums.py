@@ -20,12 +20,12 @@ def ordered(function: Callable) -> Callable:
     return rewritten(function, {"reduce_sum": _reduce_sum, "dot_general": _dot_general})
 
 
-def _reduce_sum(equation: JaxprEqn, inputs: list[Any]) -> Array:
+def _reduce_sum(equation: JaxprEqn, inputs: list[Any], _: list[bool]) -> Array:
     (a,), axes = inputs, equation.params["axes"]
     return _summed(jnp.moveaxis(a, axes, range(len(axes))), len(axes))
 
 
-def _dot_general(equation: JaxprEqn, inputs: list[Any]) -> Array:
+def _dot_general(equation: JaxprEqn, inputs: list[Any], _: list[bool]) -> Array:
     summed, batch = equation.params["dimension_numbers"]
     shared = len(summed[0]) + len(batch[0])
     a, b = (

@@ -74,6 +74,7 @@ def _listed(part: str, kinds: dict[str, Any]) -> str:
 @cache
 def _measured(env: str) -> tuple[Gymnax, Measured]:
     """Return the habitat of an environment, and the measurements."""
-    habitat = make("habitat", {"name": "gymnax", "env": env}, find)
+    # With this setting a task's bodies of MJX are those measured, and are compiled once.
+    habitat = make("habitat", {"name": "gymnax", "env": env, "squash": True}, find)
     assert isinstance(habitat, Gymnax)
     return habitat, measure(habitat)
