@@ -7,7 +7,7 @@ CONSTRAINTS ?= --constraint constraints.txt --build-constraint constraints.txt
 # Tests keep the code that they compile, which saves a third of the time when they are run again.
 TESTS := JAX_COMPILATION_CACHE_DIR=$(CURDIR)/$(VENV)/compiled $(BIN)/python -m pytest --numprocesses 2
 
-.PHONY: demo test quick slow newest compiled check docs format figures bench mutants constraints clean
+.PHONY: demo test quick slow newest oldest compiled check docs format figures bench mutants constraints clean
 
 demo: $(VENV)/installed  ## evolve pole balancers, draw and report them, and film the first life beside a long one
 	rm -rf runs/demo
@@ -32,6 +32,18 @@ slow: $(VENV)/installed-dev compiled  ## run the tests marked slow: an hour of k
 newest:  ## run `make quick` on the newest Python at hand, with the newest releases of all libraries
 	@for each in python3.14 python3.13 python3.12 python3; do \
 	  if $$each -c '' 2> /dev/null; then $(MAKE) VENV=.venv-newest CONSTRAINTS= PYTHON=$$each quick; exit; fi; done
+
+oldest: .venv-oldest/bin/uv  ## run `make quick` with the lowest releases that pyproject.toml allows
+	touch .venv-oldest/installed .venv-oldest/installed-dev
+	$(MAKE) VENV=.venv-oldest CONSTRAINTS= quick
+
+.venv-oldest/bin/uv: pyproject.toml
+	rm -rf .venv-oldest
+	$(PYTHON) -m venv .venv-oldest
+	.venv-oldest/bin/python -m pip install --quiet uv
+	$@ pip install --quiet --python .venv-oldest/bin/python --resolution lowest-direct --editable . --group dev
+	$@ pip install --quiet --python .venv-oldest/bin/python --resolution lowest-direct --no-deps --group no-deps
+	touch $@
 
 compiled:
 	@[ "$$(du -sm $(VENV)/compiled 2> /dev/null | cut -f 1)" -lt 1000 ] 2> /dev/null || rm -rf $(VENV)/compiled
@@ -66,7 +78,7 @@ constraints:  ## write the newest releases into constraints.txt; run `make check
 	mv $(VENV)/constraints constraints.txt
 
 clean:
-	rm -rf .venv .venv-newest
+	rm -rf .venv .venv-newest .venv-oldest
 
 $(VENV)/bin/python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \

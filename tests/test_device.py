@@ -75,7 +75,7 @@ def test_looking_at_a_run_changes_no_setting_of_the_process(run: Path) -> None:
 @on_x86
 @pytest.mark.parametrize(
     ("flags", "allowed"),
-    [("", "AVX2"), ("--xla_cpu_use_fusion_emitters=false", "AVX2"), (f"{ISA_FLAG}=AVX", "AVX")],
+    [("", "AVX2"), ("--xla_dump_hlo_as_text=true", "AVX2"), (f"{ISA_FLAG}=AVX", "AVX")],
 )
 def test_a_run_is_limited_to_avx2_unless_the_user_chose_otherwise(
     run: Path, tmp_path: Path, flags: str, allowed: str
@@ -91,13 +91,8 @@ def test_a_run_is_limited_to_avx2_unless_the_user_chose_otherwise(
     [
         ("", "native"),
         (f"{ISA_FLAG}=AVX {ISA_FLAG}=SSE4_2", "SSE4_2"),
-        (f"--xla_dump_to=/tmp {ISA_FLAG}=AVX2 --xla_cpu_use_fusion_emitters=false", "AVX2"),
-        (
-            "--xla_dump_hlo_as_text --xla_force_host_platform_device_count=2"
-            " --xla_cpu_parallel_codegen_split_count=1 --xla_cpu_use_fusion_emitters=false"
-            " --xla_backend_extra_options=-fast-isel=false",
-            "native",
-        ),
+        (f"--xla_dump_to=/tmp {ISA_FLAG}=AVX2", "AVX2"),
+        ("--xla_dump_hlo_as_text --xla_force_host_platform_device_count=2", "native"),
         (
             "--xla_backend_extra_options=-x --xla_cpu",
             "native --xla_backend_extra_options=-x --xla_cpu",

@@ -21,13 +21,7 @@ from primordia.errors import InputError
 PACKAGES = ("primordia", "jax", "jaxlib", "numpy")
 CPU = "cpu"
 ISA_FLAG = "--xla_cpu_max_isa"
-SAME_BITS = (
-    "--xla_dump",
-    "--xla_force_host_platform_device_count",
-    "--xla_cpu_parallel_codegen_split_count",
-    "--xla_cpu_use_fusion_emitters",
-    "--xla_backend_extra_options=-fast-isel=false",
-)
+SAME_BITS = ("--xla_dump", "--xla_force_host_platform_device_count")
 """Prefixes of XLA's flags that change no bit of a result. Any other flag may change bits."""
 
 

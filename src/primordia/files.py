@@ -38,6 +38,11 @@ KINDS: dict[int, str] = {
 """Names of the kinds of paths that are not regular files."""
 
 
+def is_plain(part: str) -> bool:
+    """Return whether a part of a path is the name of a file on every system."""
+    return part not in ("", ".", "..") and part.isprintable() and not set(part) & set('\\:*?"<>|')
+
+
 def write(path: Path, fill: Callable[[Path], object]) -> None:
     """Write the file `path`: `fill` writes a temporary file, which is then renamed.
 

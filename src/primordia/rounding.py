@@ -3,10 +3,11 @@
 Compilers change arithmetic. They contract a product and a sum into a fused multiply-add, which rounds
 once. They regroup constants: `x * a * b` becomes `x * (a * b)`. They replace divisions by a number that
 all organisms share. Whether they do so depends on their version, on the processor, on the number of
-organisms, and on everything else that a program computes. With JAX 0.12, CartPole's body had other bits among 31 organisms than among 1,024, and others
-again alone. So the float32 numbers of a program pass through an integer operation wherever a
-compiler could do this: an exclusive or with 0, which changes nothing. The 0 is an argument of the
-compiled program, so the compiler does not know it, and has to compute each result as it is written.
+organisms, and on everything else that a program computes. With JAX 0.12, CartPole's body had other
+bits among 31 organisms than among 1,024, and others again alone. So the float32 numbers of a program
+pass through an integer operation wherever a compiler could do this: an exclusive or with 0, which
+changes nothing. The 0 is an argument of the compiled program, so the compiler does not know it, and
+has to compute each result as it is written.
 """
 
 from collections.abc import Callable

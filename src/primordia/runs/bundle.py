@@ -216,7 +216,7 @@ def _entries(bundle: zipfile.ZipFile) -> Entries:
     for entry in bundle.infolist():
         name, kind = entry.orig_filename.removeprefix(TOP), stat.S_IFMT(entry.external_attr >> 16)
         parts = name.split("/")
-        if not entry.orig_filename.startswith(TOP) or not all(map(_is_plain, parts)):
+        if not entry.orig_filename.startswith(TOP) or not all(map(files.is_plain, parts)):
             raise ValueError(f"{entry.orig_filename!r} is not the path of a file in a run")
         if kind not in (0, stat.S_IFREG):
             raise ValueError(f"{name} is {files.KINDS.get(kind, 'no file')}")
@@ -231,11 +231,6 @@ def _entries(bundle: zipfile.ZipFile) -> Entries:
     if len(folded) != len(entries):
         raise ValueError("two of its files have names that differ only in case")
     return entries
-
-
-def _is_plain(part: str) -> bool:
-    """Return whether a part of a path is the name of a file on every system."""
-    return part not in ("", ".", "..") and part.isprintable() and not set(part) & set('\\:*?"<>|')
 
 
 def _seals(bundle: zipfile.ZipFile, entries: Entries) -> Seals:

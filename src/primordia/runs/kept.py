@@ -36,7 +36,8 @@ def copy(config: Config, habitat: AnyHabitat, run: Path) -> Kept:
     """Copy the files that settings name into a new run, with the files that they need.
 
     Raises:
-        InputError: the copies make another habitat, since a file names another by its full path.
+        InputError: a file has a name that some systems do not allow, or names another file by its
+            full path, so that the copies make another habitat.
         Trouble: a file cannot be read or written.
     """
     named = [each for each in files_in(config.habitat) if os.path.isabs(each) and isfile(each)]
@@ -46,6 +47,8 @@ def copy(config: Config, habitat: AnyHabitat, run: Path) -> Kept:
     found_in = Path(os.path.commonpath([path.parent for path in paths]))
     names = sorted({path.relative_to(found_in).as_posix() for path in paths})
     for name in names:
+        if not all(map(files.is_plain, name.split("/"))):
+            raise InputError(f"{found_in / name}: a run cannot hold a file of this name; rename it")
         files.make_folder((run / FOLDER / name).parent)
         try:
             files.write_bytes(run / FOLDER / name, (found_in / name).read_bytes())
