@@ -99,3 +99,12 @@ def test_a_mapped_loop_ends_for_each_by_itself() -> None:
         while x < 9:
             x, taken = x * np.float32(1.7) + np.float32(0.3), taken + 1
         assert (size, count) == (x, taken)
+
+
+def test_an_angle_does_not_depend_on_how_many_there_are() -> None:
+    numbers = np.random.default_rng(0).normal(size=1024).astype(np.float32)
+    compiled = jit(jnp.arctan)
+    whole = np.asarray(compiled(numbers))
+    np.testing.assert_allclose(whole, np.arctan(numbers), rtol=1e-6)
+    for count in (1, 3, 31, 63, 100):
+        np.testing.assert_array_equal(compiled(numbers[:count]), whole[:count])

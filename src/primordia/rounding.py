@@ -43,8 +43,13 @@ def rounded(function: Callable) -> Callable:
             a, b = map(_bits, inputs)
             return _float(a ^ zero) / _float(b ^ (a & zero))
 
+        def atan(_: JaxprEqn, inputs: list[Any], __: list[bool]) -> Array:
+            # XLA's atan, and not its atan2, has other bits for other numbers of organisms.
+            (a,) = inputs
+            return lax.atan2(a, _float(_bits(jnp.ones_like(a)) ^ zero))
+
         products = dict.fromkeys(PRODUCTS, multiply)
-        rules = {**products, "add": add, "sub": add, "div": divide}
+        rules = {**products, "add": add, "sub": add, "div": divide, "atan": atan}
         return rewritten(function, rules)(*arguments)
 
     return compute
