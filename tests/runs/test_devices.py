@@ -33,6 +33,7 @@ def elsewhere(tmp_path_factory: pytest.TempPathFactory) -> Path:
         ["verify"],
         ["revive", "0"],
         ["replay"],
+        ["film"],
         ["evaluate", "--games", "1"],
         ["fork", "--at", "20"],
         ["shadow"],

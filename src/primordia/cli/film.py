@@ -6,7 +6,7 @@ from typing import Any
 import click
 
 from primordia.cli.cache import cache_option
-from primordia.cli.flags import run_argument, trust_option, video_option
+from primordia.cli.flags import recorded_device_option, run_argument, trust_option, video_option
 
 
 @click.command(short_help="Make a film of a world.")
@@ -27,6 +27,7 @@ from primordia.cli.flags import run_argument, trust_option, video_option
     metavar="ID",
     help="Organism whose life is shown [the longest-lived so far].",
 )
+@recorded_device_option
 @trust_option
 @cache_option
 def film(run: Path, trust: bool, begin: int | None, end: int | None, **chosen: Any) -> None:

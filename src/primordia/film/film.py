@@ -19,12 +19,13 @@ from primordia.history import series
 from primordia.organism import replay, video
 from primordia.runs import bundle
 from primordia.runs.lives import Lives
-from primordia.runs.records import Records
+from primordia.runs.records import Records, on_its_device
 
 STILL = 2 * RATE
 """Number of pictures that show the end."""
 
 
+@on_its_device
 def film(
     run: Records,
     out: Path | None = None,
