@@ -75,7 +75,11 @@ def test_looking_at_a_run_changes_no_setting_of_the_process(run: Path) -> None:
 @on_x86
 @pytest.mark.parametrize(
     ("flags", "allowed"),
-    [("", "AVX2"), ("--xla_dump_hlo_as_text=true", "AVX2"), (f"{ISA_FLAG}=AVX", "AVX")],
+    [
+        ("", "AVX2"),
+        ("--xla_force_host_platform_device_count=1", "AVX2"),
+        (f"{ISA_FLAG}=AVX", "AVX"),
+    ],
 )
 def test_a_run_is_limited_to_avx2_unless_the_user_chose_otherwise(
     run: Path, tmp_path: Path, flags: str, allowed: str

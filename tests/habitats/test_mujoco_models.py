@@ -138,7 +138,7 @@ def test_a_process_that_has_drawn_ends_in_silence(library: str) -> None:
     variables = {**commands.environment(), "MUJOCO_GL": library}
     words = [sys.executable, "-c", PICTURE]
     done = subprocess.run(words, env=variables, capture_output=True, text=True, check=False)
-    if "cannot be used" in done.stderr:
+    if "cannot be used" in done.stderr or "cannot be loaded" in done.stderr:
         pytest.skip(f"there is no {library} here")
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.startswith("(640, 416)")

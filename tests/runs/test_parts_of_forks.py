@@ -181,7 +181,8 @@ def test_a_fork_has_all_other_settings_of_its_source(
     own = {"seed": 3, "hazard": 0.25, "mutation": {"probability": 0.5, "scale": 0.125}}
     own["seasons"] = [{"kind": "schedule", "setting": "hazard", "at": 9, "value": 0.5}]
     (tmp_path / "config.toml").write_text(config(MEADOW, **own).to_toml())
-    forked = fork._fork_config(tmp_path, changes, 6)
+    source: Any = SimpleNamespace(path=tmp_path, config=SimpleNamespace(kept={}))
+    forked = fork._fork_config(source, changes, 6)
     values = config(MEADOW, **{**own, **expected}).model_dump()
     assert forked.model_dump() == values | {"fork": {"run": str(tmp_path), "tick": 6}}
 

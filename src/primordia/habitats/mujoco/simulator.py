@@ -35,8 +35,8 @@ def package() -> Any:
         import_module("mujoco.batch")
     except ImportError:
         raise ValueError(NOT_INSTALLED) from None
-    except RuntimeError as error:
-        raise ValueError(f"MuJoCo cannot be loaded: {error}") from None
+    except Exception as error:  # without the library that MUJOCO_GL names, errors are of many kinds
+        raise ValueError(f"MuJoCo cannot be loaded with this MUJOCO_GL: {error}") from None
     log = mujoco.MjLogConfig.get()
     log.logto_console = log.logto_file = False
     log.set()
