@@ -26,8 +26,9 @@ test: $(VENV)/installed-dev compiled  ## run all tests: about twenty minutes on 
 quick: $(VENV)/installed-dev compiled  ## test each promise once, with the tests in tests/quick.txt: a minute on two cores
 	$(TESTS) --dist loadfile --no-loadscope-reorder @tests/quick.txt
 
-slow: $(VENV)/installed-dev compiled  ## run the tests marked slow: an hour of kills, forged runs, generated inputs and all goldens
+slow: $(VENV)/installed-dev compiled  ## run the tests marked slow: an hour of kills, forged runs, generated inputs, all goldens and the oldest releases
 	$(TESTS) -m slow
+	$(MAKE) oldest
 
 newest:  ## run `make quick` on the newest Python at hand, with the newest releases of all libraries
 	@for each in python3.14 python3.13 python3.12 python3; do \
