@@ -34,16 +34,16 @@ newest:  ## run `make quick` on the newest Python at hand, with the newest relea
 	@for each in python3.14 python3.13 python3.12 python3; do \
 	  if $$each -c '' 2> /dev/null; then $(MAKE) VENV=.venv-newest CONSTRAINTS= PYTHON=$$each quick; exit; fi; done
 
-oldest: .venv-oldest/bin/uv  ## run `make quick` with the lowest releases that pyproject.toml allows
+oldest: .venv-oldest/lowest  ## run `make quick` with the lowest releases that pyproject.toml allows
 	touch .venv-oldest/installed .venv-oldest/installed-dev
 	$(MAKE) VENV=.venv-oldest CONSTRAINTS= quick
 
-.venv-oldest/bin/uv: pyproject.toml
+.venv-oldest/lowest: pyproject.toml
 	rm -rf .venv-oldest
 	$(PYTHON) -m venv .venv-oldest
 	.venv-oldest/bin/python -m pip install --quiet uv
-	$@ pip install --quiet --python .venv-oldest/bin/python --resolution lowest-direct --editable . --group dev
-	$@ pip install --quiet --python .venv-oldest/bin/python --resolution lowest-direct --no-deps --group no-deps
+	.venv-oldest/bin/uv pip install --quiet --python .venv-oldest/bin/python --resolution lowest-direct --editable . --group dev
+	.venv-oldest/bin/uv pip install --quiet --python .venv-oldest/bin/python --resolution lowest-direct --no-deps --group no-deps
 	touch $@
 
 compiled:

@@ -22,7 +22,7 @@ RUN, OUT = Path("RUN"), Path("OUT")
 @pytest.fixture
 def opened() -> Iterator[MagicMock]:
     """Replace the records of any run. The row of an organism is 100 times its world plus its number."""
-    records = MagicMock(paths=(RUN,), versions={"device": "cpu"})
+    records = MagicMock(paths=(RUN,), made_on="cpu")
     lives = records.lives
     lives.row = lambda organism, world: 100 * world + organism
     lives.oldest = lambda world=None, after=0.5: 100 * (9 if world is None else world) + 10 * after

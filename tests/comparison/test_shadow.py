@@ -168,7 +168,7 @@ def test_lives_are_cut_at_the_age_of_saturation_or_at_a_given_one(
         config=SimpleNamespace(saturation_ticks=77),
         lives=lives,
         path=Path("runs/a"),
-        versions={"device": "cpu"},
+        made_on="cpu",
     )
     found = shadow(run)
     assert (found.name, found.births, found.cut) == ("a", 8, 77)

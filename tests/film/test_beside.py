@@ -26,7 +26,7 @@ TWO_WORLDS = joined([world_of(LIVED[:9], 900), world_of(LIVED, 1800)], np.array(
 def a_run(lives: Lives, lacks: bool = False) -> Any:
     """Return a run of invented lives; the second world has had 1,234 births."""
     return SimpleNamespace(
-        versions={"device": "cpu"},
+        made_on="cpu",
         lives=lives,
         path=Path("run"),
         config=config(MEADOW, seeds=lives.worlds, cells=60, saturation_ticks=70),

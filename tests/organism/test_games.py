@@ -198,7 +198,7 @@ def test_settings_are_given_in_a_table_or_by_name(monkeypatch: pytest.MonkeyPatc
     asked: list[Any] = []
     monkeypatch.setattr(evaluation, "players_of", lambda run, organisms: f"players {organisms}")
     monkeypatch.setattr(evaluation, "judged", lambda *given, **named: asked.append((given, named)))
-    run: Any = SimpleNamespace(config="a config", versions={"device": "cpu"})
+    run: Any = SimpleNamespace(config="a config", made_on="cpu")
     table = {"senses": [49], "sticky": 0.25}
     evaluation.evaluate(run, [(9, 1)], games=3, senses="frozen", habitat=table, sticky=0.5, noops=0)
     evaluation.evaluate(run, [(9, 1)])

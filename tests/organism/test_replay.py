@@ -115,7 +115,7 @@ def test_a_video_shows_the_named_lives_of_one_world(
     monkeypatch.setattr(replay, "film", lambda *given: made.append(given))
     monkeypatch.setattr(bundle, "refuse_changes", lambda path: made.append(("run", path)))
     monkeypatch.setattr(files, "own_folder", lambda path: made.append(("own", path)))
-    run: Any = SimpleNamespace(path=Path("RUN"), versions={"device": "cpu"})
+    run: Any = SimpleNamespace(path=Path("RUN"), made_on="cpu")
     path = replay.replay(run, 5, 3, out, (4, 9), 2.5, beside=(12, 2, 5))
     lives = [(2, 3), (5, 3), (12, 3)]
     film = (path, *((life, f"parts of {(life, (4, 9), 2.5)}") for life in lives))

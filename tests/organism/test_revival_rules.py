@@ -16,7 +16,7 @@ from primordia.organism.reliving.relived import RelivedLife
 from primordia.organism.revival import Respect, Revival
 from primordia.runs import checkpoint, directory
 
-A_RUN = MagicMock(versions={"device": "cpu"})
+A_RUN = MagicMock(made_on="cpu")
 KEPT = ({"ticks": [9, 1200]}, {"ticks": [9, 1100]}, {"ticks": [9, 60]})
 """States of a run of two worlds, newest first; the first world has stopped at tick 9."""
 

@@ -1,6 +1,7 @@
 """The recorded device is the default of everything that lives a run, or its lives, again."""
 
 import json
+import shutil
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -60,6 +61,17 @@ def test_another_device_can_be_chosen(elsewhere: Path) -> None:
     assert revived.exit_code == 0, revived.output
     refused = CliRunner().invoke(commands, ["resume", str(elsewhere), "--device", "cpu"]).exception
     assert f"device {CARD} then, cpu now" in str(refused)
+
+
+def test_a_run_without_a_recorded_device_is_lived_on_the_cpu(
+    elsewhere: Path, tmp_path: Path
+) -> None:
+    run = tmp_path / "run"
+    shutil.copytree(elsewhere, run)
+    versions = json.loads((run / "versions.json").read_text())
+    del versions["device"]
+    (run / "versions.json").write_text(json.dumps(versions))
+    assert primordia.load(run).verify() == []
 
 
 def test_the_recorded_kind_is_found_among_all_platforms(monkeypatch: pytest.MonkeyPatch) -> None:

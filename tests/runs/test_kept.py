@@ -103,6 +103,8 @@ def test_a_changed_copy_is_damage(run: Path, name: str, tmp_path: Path) -> None:
     path = copy / FOLDER / name
     path.write_bytes(path.read_bytes() + b" ")
     complains(here("verify", copy), 1, str(path))
+    with pytest.raises(Trouble, match="its checksum differs"):
+        Archive(copy).habitat  # noqa: B018, which is built here
     path.unlink()
     complains(here("verify", copy), 1, name)
 

@@ -124,7 +124,7 @@ class Run:
         `Group.evaluate`.
         """
         run = self.opened()
-        with devices.selected(None, run.versions["device"]):
+        with devices.selected(None, run.made_on):
             # The champions come first, so that a wrong option fails before many founders have lived.
             found = [group.evaluate(**options) for group in evolved(run, world)]
             return found + [group.evaluate(**options) for group in unevolved(run, founders, world)]
@@ -249,7 +249,7 @@ class Run:
         `device` is `cpu` or `gpu`; by default the kind of device that made the run.
         """
         path = Path(out) if out is not None else fresh_directory(f"{self.path.name}-at{at}")
-        with devices.selected(device, self.only().versions["device"]):
+        with devices.selected(device, self.only().made_on):
             fork(self.only(), at, path, {**(settings or {}), **more}, listen)
             loop.resume(path, checkpoint_every=checkpoint_every, listen=listen)
         return Run(path)
@@ -269,7 +269,7 @@ class Run:
         """
         every, run = checkpoint_every, self.only().path
         bundle.refuse_changes(run)
-        with devices.selected(device, self.only().versions["device"]):
+        with devices.selected(device, self.only().made_on):
             return loop.resume(run, limits, inexact=inexact, checkpoint_every=every, listen=listen)
 
     def bundle(self, file: str | Path) -> Path:
@@ -279,7 +279,7 @@ class Run:
 
     def verify(self, device: str | None = None, listen: Listener | None = None) -> list[str]:
         """Repeat the run and return the differences; see `verify.verify` and, for `device`, `resume`."""
-        with devices.selected(device, self.only().versions["device"]):
+        with devices.selected(device, self.only().made_on):
             return verify(self.only(), listen)
 
 

@@ -31,6 +31,11 @@ F = TypeVar("F", bound=Callable)
 class Records(ABC):
     """The records of W worlds with the same law; each part is read or built at its first use."""
 
+    @property
+    def made_on(self) -> str:
+        """The kind of device on which the run began."""
+        return str(self.versions.get("device", device.CPU))
+
     path: Path
     """the directory for figures and videos"""
     config: Config
@@ -184,7 +189,7 @@ def on_its_device(function: F) -> F:
 
     @wraps(function)
     def call(run: Records, *given: Any, **options: Any) -> Any:
-        with device.selected(None, run.versions["device"]):
+        with device.selected(None, run.made_on):
             return function(run, *given, **options)
 
     return cast(F, call)
