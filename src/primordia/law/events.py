@@ -120,10 +120,12 @@ def for_each(mask: Array, carry: tuple, act: Callable[[Array, Array, tuple], tup
     """
     rank = jnp.cumsum(mask, dtype=jnp.int32)
     slots = jnp.arange(batch(len(mask)), dtype=jnp.int32)
+    # In small worlds, comparing all ranks is as fast as a binary search, and compiles faster.
+    method = "compare_all" if len(slots) == 1 else "scan_unrolled"
 
     def body(state: tuple[Array, tuple]) -> tuple[Array, tuple]:
         start, carry = state
-        cells = jnp.searchsorted(rank, start + slots + 1, method="scan_unrolled").astype(jnp.int32)
+        cells = jnp.searchsorted(rank, start + slots + 1, method=method).astype(jnp.int32)
         valid = start + slots < rank[-1]
         cells = jnp.minimum(cells, len(mask) - 1)
         return start + len(slots), act(cells, valid, carry)

@@ -1,12 +1,11 @@
 """Samples: rows of a world's counts, taken at fixed ticks and when a season changes its climate."""
 
 import jax.numpy as jnp
-import numpy as np
-from jax import Array
+from jax import Array, lax
 
-from primordia.law.events import TOTALS, Rows, sample_columns
+from primordia.law.events import TOTALS, Rows
 from primordia.law.law import Law
-from primordia.law.world import Cause, World, ages, ages_total
+from primordia.law.world import World, ages, ages_total
 from primordia.random.wide import largest, signed, total
 
 
@@ -20,13 +19,17 @@ def note_samples(law: Law, world: World, due: Array, samples: Rows) -> Rows:
 
 
 def _rows(law: Law, world: World) -> Array:
+    """Return the rows of `sample_columns`, uint32 (W, words).
+
+    Totals are put together as two arrays, since XLA makes a kernel of each column that is put into a
+    row by itself: 24 of 220 in a small world.
+    """
     organisms, worlds = world
-    alive = law.by_world(organisms.alive)
     energy = signed(jnp.where(organisms.alive, organisms.energy, 0))
     totals = (
         worlds.tick,
         worlds.births,
-        *(worlds.deaths.take(np.s_[:, cause]) for cause in Cause),
+        worlds.deaths,
         worlds.extinctions,
         worlds.organism_ticks,
         ages_total(world),
@@ -34,9 +37,14 @@ def _rows(law: Law, world: World) -> Array:
         total(energy.map(law.by_world), axis=1),
         worlds.food,
     )
-    return sample_columns(law.rates).words(
-        world=jnp.arange(law.worlds, dtype=jnp.uint32),
-        population=alive.sum(axis=1, dtype=jnp.uint32),
-        **dict(zip(TOTALS, totals, strict=True)),
-        **worlds.climate,
+    high, low = map(jnp.column_stack, zip(*totals, strict=True))
+    population = law.by_world(organisms.alive).sum(axis=1, dtype=jnp.uint32)
+    rates = jnp.stack([worlds.climate[name] for name in law.rates], axis=1)
+    return jnp.column_stack(
+        (
+            jnp.arange(law.worlds, dtype=jnp.uint32),
+            population,
+            jnp.stack((high, low), axis=2).reshape(law.worlds, 2 * len(TOTALS)),
+            lax.bitcast_convert_type(rates, jnp.uint32),
+        )
     )
