@@ -10,9 +10,11 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+import click
 import duckdb
 import pytest
 
+from primordia.cli.commands import commands as primordia_
 from primordia.config import load
 from primordia.experiments.file import read
 from tests import commands
@@ -39,14 +41,13 @@ def name(page: Path) -> str:
 
 
 def with_blocks() -> list[Any]:
-    """Return the pages that have blocks; those that live the longest runs are slow.
+    """Return the pages that have blocks; all but two are slow.
 
     `tests/test_recipes.py` follows the pages in RECIPES.
     """
-    slow = ("tutorial", "experiments", "gymnax", "one-run", "report", "selection")
-    marks = dict.fromkeys(slow, pytest.mark.slow)
+    slow = {page: pytest.mark.slow for page in PAGES if page.stem not in ("README", "share")}
     return [
-        pytest.param(page, id=name(page), marks=marks.get(page.stem, ()))
+        pytest.param(page, id=name(page), marks=slow.get(page, ()))
         for page in PAGES
         if blocks(page) and page.stem not in RECIPES
     ]
@@ -105,6 +106,26 @@ def test_every_command_and_block_of_a_page_works(
             f"{page}: what is a block of {kind}?"
         )
         try_out(kind, text, tmp_path)
+
+
+def test_the_command_line_accepts_every_command_of_a_page() -> None:
+    for page in PAGES:
+        lines = [line for kind, text in blocks(page) if kind == "sh" for line in text.splitlines()]
+        for line in lines:
+            program, *words = shlex.split(line, comments=True) or [""]
+            if program == "primordia":
+                accept(primordia_, words, f"{name(page)}: {line}")
+
+
+def accept(command: click.Command | None, words: list[str], line: str) -> None:
+    """Read the words of a command as the command line does, but do nothing."""
+    while isinstance(command, click.Group):
+        command, words = command.get_command(click.Context(command), words[0]), words[1:]
+    assert command is not None, line
+    try:
+        command.make_context(line, words)
+    except click.ClickException as error:
+        pytest.fail(f"{line}: {error.format_message()}")
 
 
 def test_figures_of_pages_are_those_of_the_tables(monkeypatch: pytest.MonkeyPatch) -> None:
