@@ -14,9 +14,10 @@ from tests.goldens import CASES, FILE, entries, live, tasks
 GOLDENS: dict[str, Any] = json.loads(FILE.read_text(encoding="utf-8"))
 PLAYS: dict[str, Any] = json.loads(plays.FILE.read_text(encoding="utf-8"))
 
-SHOWN = {"CartPole-survival", "resumed", "fork", "fork-of-fork", "Pong-survival", "pong-random",
-         "Breakout-survival-forager", "HalfCheetah-forager-ratchet"}  # fmt: skip
-"""Tasks of each kind: what is drawn at random, what feeds, what seasons change. Others are slow."""
+SHOWN = {"CartPole-survival", "resumed", "fork-of-fork", "pong-random", "HalfCheetah-forager-ratchet"}
+"""Tasks of each kind of habitat, and what is done with a run. Others are slow."""
+LONG = {"craftax_classic_survival.toml", "minatar_asterix_survival.toml"}
+"""Files of tasks whose bodies take long to compile; their plays are slow."""
 
 
 def marked(cases: Iterable[tuple[str, Any]], shown: set[str]) -> list[Any]:
@@ -43,7 +44,9 @@ def test_each_task_lives_as_it_did(name: str, tmp_path: Path) -> None:
     assert_lives_as_it_did(name, tmp_path)
 
 
-@pytest.mark.parametrize("file", plays.NAMES)
+@pytest.mark.parametrize(
+    "file", [pytest.param(file, marks=[pytest.mark.slow] * (file in LONG)) for file in plays.NAMES]
+)
 def test_each_task_is_played_as_it_was(file: str) -> None:
     habitat = plays.settings_of(file)["habitat"]
     packages = {"atari": "ale_py", "mujoco": "mujoco", "gymnasium": "Box2D", "gymnax": "craftax"}
