@@ -14,7 +14,13 @@ from tests.goldens import CASES, FILE, entries, live, tasks
 GOLDENS: dict[str, Any] = json.loads(FILE.read_text(encoding="utf-8"))
 PLAYS: dict[str, Any] = json.loads(plays.FILE.read_text(encoding="utf-8"))
 
-SHOWN = {"CartPole-survival", "resumed", "fork-of-fork", "pong-random", "HalfCheetah-forager-ratchet"}
+SHOWN = {
+    "CartPole-survival",
+    "resumed",
+    "fork-of-fork",
+    "pong-random",
+    "HalfCheetah-forager-ratchet",
+}
 """Tasks of each kind of habitat, and what is done with a run. Others are slow."""
 LONG = {"craftax_classic_survival.toml", "minatar_asterix_survival.toml"}
 """Files of tasks whose bodies take long to compile; their plays are slow."""

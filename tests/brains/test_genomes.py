@@ -71,6 +71,7 @@ def test_founders_of_a_run_have_the_genomes_of_its_ancestors(
     ]
 
 
+@pytest.mark.slow
 def test_genomes_that_descend_from_ancestors_are_rebuilt_by_the_same_code(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:

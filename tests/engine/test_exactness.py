@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from primordia.brains.contract import KNOWN, find
+from primordia.brains.contract import find
 from primordia.compiled import jit
 from primordia.habitats.cartpole.habitat import CartPole
 from tests.commands import AFRESH, environment
@@ -40,6 +40,7 @@ def test_chunks_of_any_length_make_the_same_run_with_metabolism_noise_and_season
     assert Lived(config(MILL, seeds=2), 700, chunk).digests() == whole.digests()
 
 
+@pytest.mark.slow
 def test_a_world_is_the_same_alone_and_among_a_hundred() -> None:
     among, alone = Lived(config(cells=32, seed=0, seeds=100), 600), Lived(config(**CARTPOLE), 600)
     assert among.digests()[5] == alone.digests()[0]
@@ -95,6 +96,7 @@ def test_a_habitat_on_the_host_lives_under_the_same_law(fused: str | dict, inner
             np.testing.assert_array_equal(a[name][alive], b[name][alive], err_msg=name)
 
 
+@pytest.mark.slow
 def test_a_numpy_habitat_is_exact_in_chunks_of_any_length() -> None:
     host = {"name": "tests.toys:HostCartPole"}
     values = {"task": "host", "habitat": host, "cells": 8}
@@ -103,8 +105,9 @@ def test_a_numpy_habitat_is_exact_in_chunks_of_any_length() -> None:
     assert Lived(config(values), 400, chunk=9).digests() == whole.digests()
 
 
-@pytest.mark.parametrize("kind", KNOWN)
-@pytest.mark.parametrize("habitat", [CartPole(), Mill()])
+@pytest.mark.parametrize(
+    ("habitat", "kind"), [(CartPole(), "recurrent"), (Mill(), "feed-forward"), (Mill(), "gated")]
+)
 def test_brains_and_bodies_do_not_depend_on_their_number(kind: str, habitat) -> None:
     brain, sizes = find(kind)(), (habitat.senses_size, habitat.action.size)
     rng, layout = np.random.default_rng(0), brain.layout(*sizes)
@@ -125,7 +128,7 @@ def test_brains_and_bodies_do_not_depend_on_their_number(kind: str, habitat) -> 
         return jax.lax.scan(tick, start, None, length=50)[0]
 
     memory, bodies = lives(genome, words)
-    for n in (1, 2, 7, 31, 32, 1000):
+    for n in (1, 7, 31):
         few_memory, few_bodies = lives({k: v[:n] for k, v in genome.items()}, words[:n])
         np.testing.assert_array_equal(few_memory, memory[:n])
         np.testing.assert_array_equal(few_bodies, bodies[:n])
@@ -139,6 +142,7 @@ print(Lived(config(cells=64, seeds=8, seed=3), 600).digests())
 """
 
 
+@pytest.mark.slow
 def test_a_run_is_the_same_on_any_number_of_threads() -> None:
     def run(*processors: int) -> str:
         command = [sys.executable, "-c", PROGRAM, *map(str, processors)]

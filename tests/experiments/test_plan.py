@@ -300,6 +300,7 @@ def test_names_of_arms_differ_by_more_than_case(tmp_path: Path) -> None:
     complains(here("experiment", file), 2, "'mild' cannot name an arm, or names two arms")
 
 
+@pytest.mark.slow
 def test_one_arm_is_lived_and_not_compared(tmp_path: Path) -> None:
     out = tmp_path / "out"
     file = write(tmp_path, arms=[{"name": "mild"}], stop={"ticks": 9})

@@ -58,7 +58,9 @@ def test_a_nan_kills_its_owner_and_changes_no_other_organism(where: str) -> None
     )
 
 
-@pytest.mark.parametrize(("rule", "speed"), [("blind", 0.1), ("empty-only", 0.2)])
+@pytest.mark.parametrize(
+    ("rule", "speed"), [("blind", 0.1), pytest.param("empty-only", 0.2, marks=pytest.mark.slow)]
+)
 def test_a_front_moves_at_the_speed_of_its_rule(rule: str, speed: float) -> None:
     """A founder on a large ring spreads p/2 cells a tick on each side if placement is blind, else p."""
     cells, worlds, ticks = 512, 4, 900

@@ -26,7 +26,6 @@ NONE = -1
     ("probability", "mutation"),
     [
         (0.0, {"kind": "gaussian"}),
-        (1.0, {"kind": "heritable"}),
         (1.0, {"kind": "heritable", "belongs": "cell"}),
     ],
 )

@@ -139,7 +139,7 @@ def test_a_change_is_measured_in_the_moments_that_are_known(base: dict[str, Any]
         "mill": (slice(0, 0), slice(0, 2)),
         "organ": (slice(0, 3), slice(3, 5)),
     }[base["habitat"]["name"].split(":")[1].lower()]
-    law = Lived(config({**base, "mutation": MUTATION, "seasons": []}), 1).engine.law
+    law = law_of({**base, "mutation": MUTATION, "seasons": []})
     random = np.random.default_rng(1)
     known = random.random((5, KEPT)) < 0.6
     known[0], known[1], known[4] = True, False, True

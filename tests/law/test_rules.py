@@ -23,7 +23,6 @@ def placed(topology: str, rule: str, **values: Any) -> dict[str, Any]:
 
 ENERGY = {"store": 50.0, "drain": 1.25, "gain": 1.7, "effort_cost": 0.5}
 HISTORIES: dict[str, dict[str, Any]] = {
-    "ring": placed("ring", "blind", hazard=0.09),
     "torus8": placed(
         "torus8",
         "empty-only",
@@ -48,7 +47,7 @@ HISTORIES: dict[str, dict[str, Any]] = {
         inheritance="founder",
         mutation={"founder_scale": 0.5},
     ),
-    "fill": placed("well-mixed", "blind", hazard=0.2, genesis="fill"),
+    "fill": placed("ring", "blind", hazard=0.2, genesis="fill"),
     "short": placed(
         "ring",
         "empty-only",
@@ -82,8 +81,7 @@ def test_records_obey_the_rules_of_their_world(
 
 
 def test_extinction_brings_founders_in_the_same_tick(histories: dict[str, list[History]]) -> None:
-    for name in ("ring", "fill"):
-        assert sum(len(history.extinctions) for history in histories[name]) > 3
+    assert sum(len(history.extinctions) for history in histories["fill"]) > 3
     for history in histories["fill"]:
         founders = [life for life in history.lives if life.parent is None]
         assert len(founders) == 12 * (1 + len(history.extinctions))
@@ -102,7 +100,7 @@ def test_fixation_is_that_of_the_pedigree(histories: dict[str, list[History]]) -
     assert fixed > 10
 
 
-@pytest.mark.parametrize("name", ["ring", "torus8", "well-mixed", "control", "fill"])
+@pytest.mark.parametrize("name", ["torus8", "well-mixed", "control", "fill"])
 def test_hazard_strikes_its_share_of_organism_ticks(
     histories: dict[str, list[History]], name: str
 ) -> None:
@@ -151,7 +149,7 @@ def test_without_heredity_no_two_genomes_are_alike(histories: dict[str, list[His
 
 def test_newborns_begin_with_a_fresh_body_and_an_empty_memory() -> None:
     """The run stops in a tick of births; each organism has sensed as often as it has lived."""
-    run = Lived(config(MEADOW, **HISTORIES["ring"]), 10_000, births=200)
+    run = Lived(config(MEADOW, **HISTORIES["well-mixed"]), 10_000, births=200)
     (organisms, worlds), bodies = run.engine.state
     alive = np.asarray(organisms.alive)
     now = np.repeat(to_host(worlds.tick), 12)

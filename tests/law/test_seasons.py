@@ -180,6 +180,7 @@ def test_ratchets_look_at_what_the_records_say(mills: Lived, world: int) -> None
     assert rows["food"][-1] == eaten
 
 
+@pytest.mark.slow
 def test_a_season_of_a_blocks_scale_changes_that_block_only() -> None:
     """No organism dies and all children mutate, so children can be compared with their parents."""
     last = 40

@@ -235,6 +235,7 @@ def test_bad_input_is_one_line(run: Path, words: list, part: str) -> None:
     complains(here(*(str(word).replace("RUN", str(run)) for word in words)), 2, part)
 
 
+@pytest.mark.slow
 def test_lines_of_a_world_that_died_out_are_lost(tmp_path: Path) -> None:
     """All 16 founders die at once, and so do their successors."""
     starving = {
