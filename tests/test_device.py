@@ -77,8 +77,8 @@ def test_looking_at_a_run_changes_no_setting_of_the_process(run: Path) -> None:
     ("flags", "allowed"),
     [
         ("", "AVX2"),
-        ("--xla_force_host_platform_device_count=1", "AVX2"),
-        (f"{ISA_FLAG}=AVX", "AVX"),
+        pytest.param("--xla_force_host_platform_device_count=1", "AVX2", marks=pytest.mark.slow),
+        pytest.param(f"{ISA_FLAG}=AVX", "AVX", marks=pytest.mark.slow),
     ],
 )
 def test_a_run_is_limited_to_avx2_unless_the_user_chose_otherwise(

@@ -7,7 +7,13 @@ import pytest
 from tests.test_docs import HERE, RECIPES, blocks, try_out
 
 
-@pytest.mark.parametrize("part", RECIPES)
+@pytest.mark.parametrize(
+    "part",
+    [
+        pytest.param(part, marks=pytest.mark.slow if part in ("brain", "mutation") else ())
+        for part in RECIPES
+    ],
+)
 def test_a_recipe_takes_one_file(
     part: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

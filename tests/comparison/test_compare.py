@@ -290,6 +290,7 @@ def test_everything_that_is_drawn_is_within_the_page(
             assert drawn.bbox.count_contains([box.min, box.max]) == 2, text
 
 
+@pytest.mark.slow
 def test_food_is_counted_by_ticks_where_a_habitat_has_no_seconds(tmp_path: Path) -> None:
     for name, food in (("much", 0.5), ("little", 0.25)):
         habitat = {**MEADOW["habitat"], "food": food}

@@ -32,13 +32,19 @@ LIVED = {
     "Reacher-forager-costly": 150,
 }
 
+COSTLY = ("Craftax-Classic-survival", "MinAtar-Asterix-survival")
+"""Tasks whose bodies take long to compile."""
+
 
 def needed(task: str) -> None:
     if package := SIMULATORS.get(load(task).habitat["name"]):
         pytest.importorskip(package)
 
 
-@pytest.mark.parametrize("task", tasks())
+@pytest.mark.parametrize(
+    "task",
+    [pytest.param(task, marks=pytest.mark.slow if task in COSTLY else ()) for task in tasks()],
+)
 def test_every_task_is_an_environment_that_gymnasium_accepts(task: str) -> None:
     needed(task)
     env = gymnasium.make(f"primordia/{task}-v0")
@@ -51,7 +57,13 @@ def test_every_task_is_an_environment_that_gymnasium_accepts(task: str) -> None:
     env.close()
 
 
-@pytest.mark.parametrize("task", LIVED)
+@pytest.mark.parametrize(
+    "task",
+    [
+        pytest.param(task, marks=() if task == "CartPole-survival" else pytest.mark.slow)
+        for task in LIVED
+    ],
+)
 def test_a_life_has_the_numbers_that_it_has_in_a_run(task: str, tmp_path: Path) -> None:
     """The actions of an organism of a run, taken in the environment, from its birth to its death."""
     needed(task)

@@ -21,8 +21,16 @@ ale_py = pytest.importorskip("ale_py")
 PAPERS = ["pong", "boxing", "space_invaders", "battle_zone", "breakout", "freeway"]
 OTHERS = [pytest.param(each, marks=pytest.mark.slow) for each in games() if each not in PAPERS]
 
+each_game = pytest.mark.parametrize(
+    "game",
+    [
+        pytest.param(game, marks=() if game == "boxing" else pytest.mark.slow)
+        for game in [*PAPERS, *OTHERS]
+    ],
+)
 
-@pytest.mark.parametrize("game", [*PAPERS, *OTHERS])
+
+@each_game
 def test_a_cloned_game_continues_as_the_original(game: str) -> None:
     """A game that is cloned, saved and restored has the same RAM and points for 2,000 frames."""
     one, other = console(game), console(game)
@@ -156,7 +164,7 @@ def test_no_ops_are_drawn_from_0_to_the_maximum() -> None:
     assert len(frames) == 4
 
 
-@pytest.mark.parametrize("game", [*PAPERS, *OTHERS])
+@each_game
 def test_a_start_after_no_ops_is_the_same_whatever_starts_are_kept(game: str) -> None:
     """Each start equals that of an emulator that has played nothing else, and so does its picture."""
     screen = {SCREEN: ("uint8", console(game).getScreenRGB().shape)}

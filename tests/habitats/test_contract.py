@@ -210,6 +210,7 @@ def test_no_habitat_lacks_what_has_no_default(kind: type, names: set[str]) -> No
             type("Partly", (kind,), {"senses_size": 1, **methods})()
 
 
+@pytest.mark.slow
 def test_bodies_that_cannot_be_saved_start_again_after_a_resume(tmp_path: Path) -> None:
     """A resumed run continues with bodies as they were at birth, and says that it is not exact."""
     habitat, run = {"name": f"{__name__}:Forgetful"}, tmp_path / "run"

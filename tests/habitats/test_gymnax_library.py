@@ -23,7 +23,9 @@ MINATAR = [
 WORDS = np.random.default_rng(5).integers(2**32, size=(6, 2), dtype=np.uint32)
 
 
-@pytest.mark.parametrize("name", ["Asterix-MinAtar", "Breakout-MinAtar"])
+@pytest.mark.parametrize(
+    "name", [pytest.param("Asterix-MinAtar", marks=pytest.mark.slow), "Breakout-MinAtar"]
+)
 def test_a_life_is_what_the_library_computes(name: str) -> None:
     habitat, (env, params) = Gymnax(env=name, food="reward"), gymnax.make(name)
     with jax.threefry_partitionable(True):
@@ -57,6 +59,7 @@ def test_craftax_keeps_the_contract(name: str) -> None:
     check_habitat(Gymnax(env=name, food="reward"))
 
 
+@pytest.mark.slow
 def test_a_task_is_made_from_lives_at_random() -> None:
     task = values("CartPole-v1")
     assert 1 / 40 < task["replication"] < 1 / 15

@@ -4,6 +4,7 @@ from typing import Any
 
 import jax
 import numpy as np
+import pytest
 from jax import lax
 
 from primordia.habitats.gymnax.habitat import Gymnax
@@ -22,6 +23,7 @@ def test_a_sum_over_nothing_is_zero_and_nothing_has_no_sums() -> None:
     np.testing.assert_array_equal(ordered(lambda a: a.T @ a)(a), np.zeros((3, 3)))
 
 
+@pytest.mark.slow
 def test_sums_and_matrix_products_do_not_depend_on_the_number_of_bodies() -> None:
     check_habitat(Gymnax(env="tests.walks:Turning"))
 

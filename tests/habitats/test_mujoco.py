@@ -102,6 +102,7 @@ def test_scores_are_gymnasiums(task: str, name: str, tolerance: float) -> None:
     assert ours == pytest.approx(paid, rel=tolerance, abs=tolerance)
 
 
+@pytest.mark.slow
 def test_evaluations_are_cut_where_gymnasium_cuts(tmp_path: Path) -> None:
     settings = {"cells": 4, "genesis": "fill", "stop": {"ticks": 30, "until": "none"}}
     run = primordia.run("HalfCheetah-forager", tmp_path / "run", **settings)

@@ -29,7 +29,9 @@ def reachers(tmp_path_factory: pytest.TempPathFactory) -> Path:
     ).path
 
 
-@pytest.mark.parametrize("task", ["Reacher-forager-costly", "Humanoid-forager"])
+@pytest.mark.parametrize(
+    "task", ["Reacher-forager-costly", pytest.param("Humanoid-forager", marks=pytest.mark.slow)]
+)
 def test_a_run_that_was_stopped_continues_exactly(task: str, tmp_path: Path) -> None:
     """This holds also where food is measured from the body's place before the stop."""
     digests = []

@@ -188,7 +188,9 @@ def test_a_part_that_does_not_work_is_named(
     assert not Path("run").exists()
 
 
-@pytest.mark.parametrize("kind", TEXTS)
+@pytest.mark.parametrize(
+    "kind", ["in JAX", *(pytest.param(k, marks=pytest.mark.slow) for k in TEXTS if k != "in JAX")]
+)
 def test_a_part_that_works_is_lived_with(kind: str, pond: Path) -> None:
     pond.write_text(TEXTS[kind][0])
     done = begun(kind)
@@ -215,6 +217,7 @@ def test_a_habitat_that_ends_the_process_is_reported(pond: Path) -> None:
     complains(begun("on the host"), 1, "the run's code has ended the process: exit(3)")
 
 
+@pytest.mark.slow
 def test_an_environment_of_a_library_is_not_traced_before_a_run(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
