@@ -28,7 +28,6 @@ from primordia.cli.streams import flush, report
 from primordia.cli.variables import check_variables
 from primordia.errors import InputError, Trouble
 
-
 GROUPS = {
     "Evolve": ("run", "resume", "fork", "experiment", "tasks", "new", "check"),
     "Look": ("info", "plot", "report", "watch", "replay", "film"),
@@ -70,8 +69,8 @@ def commands() -> None:
 
 
 PARTS = (
-    bundle, descent, doctor, environments, evaluate, evolve, experiment, film, inspect, lineage, page, revive,
-    shadow, track, assays,
+    bundle, descent, doctor, environments, evaluate, evolve, experiment, film, inspect, lineage, page,
+    revive, shadow, track, assays,
 )  # fmt: skip
 made = {command.name: command for part in PARTS for command in part.COMMANDS}
 for names in GROUPS.values():
