@@ -99,6 +99,7 @@ def test_the_sign_test_is_a_binomial(one: int, other: int, p: float) -> None:
     assert sign_test(one, other) == pytest.approx(p)
 
 
+@pytest.mark.slow
 def test_the_command_takes_runs_organisms_and_files(poles: primordia.Run, tmp_path: Path) -> None:
     file = tmp_path / "one.safetensors"
     poles.export(file, 3)
