@@ -5,6 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from primordia.experiments.campaign import begin
 from tests import commands
 from tests.experiments.meadows import write
