@@ -9,21 +9,12 @@ import pytest
 import primordia
 from primordia.runs import loop
 from tests.report.browser import DESKTOP, Page, browser
-from tests.worlds import MEADOW, config
+from tests.worlds import HERD, config
 
 TORUS: dict[str, Any] = {
-    **MEADOW,
+    **HERD,
     "about": "Meadows in which nothing moves.",
-    "habitat": {"name": "tests.toys:Meadow", "lifespan": 90},
-    "brain": {"kind": "feed-forward", "hidden": 1},
-    "placement": {"topology": "torus8"},
-    "cells": 24,
     "seed": 5,
-    "seeds": 3,
-    "replication": 0.05,
-    "hazard": 0.01,
-    "metabolism": {"store": 400.0},
-    "sample_every": 100,
     "stop": {"ticks": 900},
 }
 

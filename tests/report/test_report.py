@@ -17,7 +17,7 @@ from primordia.report.lives import chosen, films
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
-from tests.experiments.meadows import write
+from tests.experiments.meadows import herds
 from tests.runs.conftest import folder
 from tests.strangers import begun, elsewhere
 from tests.worlds import config
@@ -135,7 +135,7 @@ def test_a_fork_is_verified_since_it_needs_its_directory(torus: Path, tmp_path: 
 
 
 def test_an_experiment_is_shown_as_far_as_it_is(tmp_path: Path) -> None:
-    file, out = write(tmp_path, jobs={"worlds": 3}), tmp_path / "out"
+    file, out = herds(tmp_path), tmp_path / "out"
     assert here("experiment", file, "--out", out, "--job", 0, "--quiet").returncode == 0
     complains(here("report", out), 2, "arm harsh", "has not begun")
     assert here("experiment", file, "--out", out, "--job", 1, "--quiet").returncode == 0
