@@ -66,10 +66,23 @@ def forget() -> None:
         code._trusted.clear()
 
 
+_lived: dict[tuple[bytes, ...], Path] = {}
+"""Folders with a run and the user's trust, by the files that the run was begun with."""
+
+
 def begun(folder: Path) -> Path:
-    primordia.run(str(folder / "task.toml"), folder / "run")
-    forget()
-    return folder / "run"
+    """Begin a run, in a folder whose parent has the user's trust. A run of the same files is a copy."""
+    run, state = folder / "run", folder.parent / "state"
+    files = tuple(path.read_bytes() for path in sorted(folder.iterdir()))
+    if files not in _lived:
+        primordia.run(str(folder / "task.toml"), run)
+        forget()
+        _lived[files] = folder.parent / "lived"
+        shutil.copytree(run, _lived[files] / "run")
+        shutil.copytree(state, _lived[files] / "state")
+        return run
+    shutil.copytree(_lived[files] / "state", state)
+    return Path(shutil.copytree(_lived[files] / "run", run))
 
 
 def elsewhere(folder: Path, run: Path, monkeypatch: pytest.MonkeyPatch) -> Path:

@@ -27,7 +27,7 @@ ALL = np.ones(7, bool)
 
 
 @contextmanager
-def counters(cells: int = 7, workers: int = 3) -> Iterator[Workers]:
+def counters(cells: int = 7, workers: int = 2) -> Iterator[Workers]:
     pool = Workers("tests.counters:Counters", {"start": 100}, FIELDS, cells, workers)
     try:
         yield pool
@@ -54,7 +54,7 @@ def wait_until_gone(process: int) -> None:
 def test_each_cell_has_a_simulator_in_one_of_the_workers() -> None:
     with counters() as pool:
         pool.reset(ALL)
-        assert len(set(pool.arrays["who"].tolist())) == 3
+        assert len(set(pool.arrays["who"].tolist())) == 2
 
 
 @pytest.mark.parametrize(("add", "status"), [(-1, "1"), (-2, "7")])
@@ -179,7 +179,7 @@ def test_a_signal_that_ends_the_run_kills_its_workers() -> None:
     with counters() as pool:
         (kill,) = [each for each in interrupts._undo if each not in before]
         kill()
-        assert [worker.wait(30) for worker in pool._workers] == [-signal.SIGKILL] * 3
+        assert [worker.wait(30) for worker in pool._workers] == [-signal.SIGKILL] * 2
     assert interrupts._undo == before
 
 

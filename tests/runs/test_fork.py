@@ -33,7 +33,8 @@ def mill(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def poles(tmp_path_factory: pytest.TempPathFactory) -> Path:
     run = tmp_path_factory.mktemp("poles") / "run"
-    return primordia.run("CartPole-survival", run, stop={"ticks": 3000, "until": "none"}).path
+    stop = {"ticks": 3000, "until": "none"}
+    return primordia.run("CartPole-survival", run, cells=16, stop=stop).path
 
 
 def arrays(run: Path) -> dict[str, np.ndarray]:

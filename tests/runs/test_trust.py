@@ -196,7 +196,7 @@ def test_an_installed_part_with_which_the_user_began_is_trusted(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     kind = "primordia.mutations.gaussian:Gaussian"
-    task = f"task = 'CartPole-survival'\ncells = 4\nmutation = {{ kind = '{kind}' }}"
+    task = f"task = 'CartPole-survival'\ncells = 16\nmutation = {{ kind = '{kind}' }}"
     (folder / "task.toml").write_text(f"{task}\nstop = {{ ticks = 60, until = 'none' }}")
     run = begun(folder)
     assert here(*words(LIVING[0], run)).returncode == 0
