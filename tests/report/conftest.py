@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 import primordia
+from primordia.report import lives
 from primordia.runs import loop
 from tests.report.browser import DESKTOP, Page, browser
 from tests.worlds import HERD, config
@@ -37,8 +38,10 @@ def cart(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def cart_page(cart: Path) -> Path:
-    """Write the page of a run, with films."""
-    return primordia.load(cart).report()
+    """Write the page of a run, with short films."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(lives, "PART", 1.0)
+        return primordia.load(cart).report()
 
 
 @pytest.fixture(scope="session")
