@@ -7,13 +7,13 @@ import sys
 import tomllib
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 pytest.importorskip("gymnasium")
 
 from primordia import testing
 from primordia.runs.archive import Archive
+from primordia.runs.digest import digests
 from primordia.settings import doors
 from tests import commands
 from tests.commands import complains, environment, here
@@ -45,15 +45,13 @@ def test_an_environment_is_lived_in_by_its_name_alone(tmp_path: Path) -> None:
     assert here("resume", run, *MORE).returncode == 0
     whole = tmp_path / "whole"
     assert here("run", POND, "--out", whole, *SHORT, "--ticks", "120").returncode == 0
-    digests = [digest_of(each) for each in (run, whole)]
-    assert digests[0] == digests[1]
+    assert digest_of(run) == digest_of(whole)
     assert here("verify", run).returncode == 0
     fork = tmp_path / "fork"
     assert here("fork", run, "--at", "50", "--out", fork, *MORE).returncode == 0
     assert here("verify", fork).returncode == 0
-    for name, array in Archive(run).state.items():
-        if not name.startswith("tail."):
-            np.testing.assert_array_equal(Archive(fork).state[name], array, err_msg=name)
+    living = [digests({}, Archive(each).state, 1) for each in (run, fork)]
+    assert living[0] == living[1], "a fork without changes lives the same"
     assert here("replay", run, "--out", tmp_path / "life.gif").returncode == 0
     assert (tmp_path / "life.gif").stat().st_size > 1000
 
