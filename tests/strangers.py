@@ -58,9 +58,9 @@ LIVING = [
 ]
 
 
-def forget() -> None:
-    """Act as another process, which has not imported the code."""
-    for name in ("pond", "pond_depth"):
+def forget(*modules: str) -> None:
+    """Act as another process, which has not imported the code: that of the pond, or some modules."""
+    for name in modules or ("pond", "pond_depth"):
         sys.modules.pop(name, None)
         own_code._admitted.sources.pop(name, None)
         code._trusted.clear()

@@ -2,7 +2,6 @@
 
 import json
 import shutil
-import subprocess
 import sys
 import tomllib
 from pathlib import Path
@@ -11,12 +10,14 @@ import pytest
 
 pytest.importorskip("gymnasium")
 
+import gymnasium
+
 from primordia import testing
 from primordia.runs.archive import Archive
 from primordia.runs.digest import digests
 from primordia.settings import doors
-from tests import commands
-from tests.commands import complains, environment, here
+from tests.commands import begin, complains, here
+from tests.strangers import forget
 
 MORE = ["--ticks", "120", "--quiet"]
 SHORT = ["--quiet", "--cells", "6", "--habitat.workers", "0"]
@@ -96,42 +97,26 @@ def test_an_environment_of_the_users_own_is_part_of_the_run(
     other.mkdir()
     (mine / "swamp.py").write_text(SWAMP)
     (mine / "swamp_depth.py").write_text("DEPTH = 2.0\n")
-    run = [
-        *commands.COMMAND,
-        "run",
-        "gym:swamp:Swamp-v0",
-        "--out",
-        "run",
-        "--quiet",
-        "--cells",
-        "6",
-    ]
-    done = execute([*run, "--ticks", "60", "--habitat.workers", "1"], mine)
-    assert (done.returncode, done.stderr) == (0, "")
+    monkeypatch.chdir(mine)
+    words = ["--quiet", "--cells", "6", "--ticks", "60", "--habitat.workers", "1"]
+    process = begin("run", "gym:swamp:Swamp-v0", "--out", "run", *words)
+    _, errors = process.communicate(timeout=120)
+    assert (process.returncode, errors) == (0, "")
     held = {path.name for path in (mine / "run" / "code").rglob("*.py")}
     assert {"swamp.py", "swamp_depth.py"} <= held
     shutil.copytree(mine / "run", other / "run")
     monkeypatch.setenv("XDG_STATE_HOME", str(other))
-    resume = ["resume", "run", "--ticks", "90", "--quiet"]
     monkeypatch.chdir(other)
+    resume = ["resume", "run", "--ticks", "90", "--quiet"]
     complains(here(*resume), 2, "executes code", "--trust")
-    done = execute([*commands.COMMAND, *resume, "--trust"], other)
+    assert "swamp" not in sys.modules
+    done = here(*resume, "--trust")
     assert (done.returncode, done.stderr) == (0, "")
+    forget("swamp", "swamp_depth")
+    gymnasium.registry.pop("Swamp-v0")
     (mine / "swamp_depth.py").write_text("DEPTH = 1.0\n")
     monkeypatch.chdir(mine)
     complains(here(*resume), 2, "swamp_depth.py has changed")
-
-
-def execute(words: list[str], folder: Path) -> "subprocess.CompletedProcess[str]":
-    assert words[0] == sys.executable
-    return subprocess.run(
-        words,
-        cwd=folder,
-        env=environment(),
-        capture_output=True,
-        text=True,
-        check=False,
-    )
 
 
 def test_an_environment_in_jax_is_lived_in_by_its_name_alone(tmp_path: Path) -> None:

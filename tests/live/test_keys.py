@@ -31,12 +31,13 @@ def terminal() -> Iterator[Terminal]:
         yield terminal
 
 
-def test_keys_pause_step_and_quit_and_the_terminal_is_given_back(
+def test_keys_pause_step_and_stop_and_the_terminal_is_given_back(
     terminal: Terminal, tmp_path: Path
 ) -> None:
     before, run = terminal.modes(), tmp_path / "run"
-    process = terminal.begin("run", *SMALL[:-1], "--until", "none", "--out", run)
-    terminal.read_until("\x1b[?25l", "line of descent", "quit")
+    words = "run", *SMALL[:-1], "--until", "none", "--speed", "5", "--out", run
+    process = terminal.begin(*words)
+    terminal.read_until("\x1b[?25l", "line of descent", "quit", "at most 5 ticks/s")
     assert terminal.modes() != before
     terminal.press(b" ")
     ticks = [terminal.read_match(r"paused.*?tick +([\d,]+) ")]
@@ -47,18 +48,9 @@ def test_keys_pause_step_and_quit_and_the_terminal_is_given_back(
     assert np.diff(counts).tolist() == [1, 1]
     terminal.press(b"?")
     terminal.read_until("Live one tick, and pause.")
-    terminal.press(b"q")
+    terminal.press(b"\x03")
     written = terminal.read_until("\x1b[?25h", "Stopped and saved. Go on with: primordia resume")
     assert "\x1b[?25l" not in written, "the cursor stays"
-    assert process.wait(timeout=60) == 130
-    assert terminal.modes() == before
-
-    process = terminal.begin("resume", run, "--speed", "5")
-    terminal.read_until("at most 5 ticks/s")
-    terminal.press(b" ")
-    terminal.read_until("paused")
-    terminal.press(b"\x03")
-    terminal.read_until("\x1b[?25h", "Stopped and saved")
     assert process.wait(timeout=60) == 130
     assert terminal.modes() == before
 

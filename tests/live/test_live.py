@@ -163,10 +163,10 @@ def test_plain_lines_where_there_is_no_terminal(
     assert (quiet.stdout, quiet.stderr) == ("", "")
 
 
-# A terminal, a process, and the signal by which it is stopped.
+# A terminal, a process, and the signal of Ctrl-C.
 
 
-def test_a_terminal_shows_the_strip_and_a_signal_saves(tmp_path: Path) -> None:
+def test_a_terminal_shows_the_strip_and_control_c_saves(tmp_path: Path) -> None:
     """Standard input is a file here, so no keys are named."""
     with opened() as terminal:
         run = tmp_path / "run"
@@ -174,7 +174,7 @@ def test_a_terminal_shows_the_strip_and_a_signal_saves(tmp_path: Path) -> None:
         process = terminal.begin(*words, keys=os.devnull)
         shown = terminal.read_until("\x1b[?25l", "█", "line of descent", "takeovers", "\x1b[38;2")
         assert "quit" not in shown
-        process.send_signal(signal.SIGTERM)
+        process.send_signal(signal.SIGINT)
         terminal.read_until("\x1b[?25h", "Stopped and saved. Go on with: primordia resume")
         assert process.wait(timeout=60) == 130
     info = json.loads(here("info", run, "--json").stdout)

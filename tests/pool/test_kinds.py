@@ -67,8 +67,7 @@ def test_saved_states_go_on_in_another_kind(one: int, other: int) -> None:
     [
         ("1", None, 5, 0),
         ("2", None, 5, 2),
-        ("8", None, 3, 3),
-        ("1", 2, 5, 2),
+        ("8", None, 2, 2),
         ("3", 0, 5, 0),
         ("3", None, 1, 0),
         ("3", 2, 1, 1),

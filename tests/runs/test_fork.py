@@ -109,16 +109,24 @@ def test_figures_of_a_fork_begin_at_the_fork(mill: Path, tmp_path: Path, at: int
 
 
 def test_a_season_changes_lives_as_a_fork_does(mill: Path, tmp_path: Path) -> None:
-    """They give the same bits, so a change that a fork has shown can be shipped as a season."""
+    """They give the same bits, so a change that a fork has shown can be shipped as a season.
+
+    A fork may also get the season. At tick 200 an old ratchet has just looked at food, so it makes
+    no difference that all ratchets of such a fork count from the fork.
+    """
     change = {"mutation": {"probability": 0.1}, "hazard": 0.03}
     then = [
         {"kind": "schedule", "setting": name, "at": 250, "value": value}
         for name, value in (("mutation.probability", 0.1), ("hazard", 0.03))
     ]
-    loop.start(config(SHIFTING, seasons=[*SHIFTING["seasons"], *then]), tmp_path / "seasons")
+    seasons = [*SHIFTING["seasons"], *then]
+    loop.start(config(SHIFTING, seasons=seasons), tmp_path / "seasons")
     primordia.load(mill).fork(250, tmp_path / "fork", **change)
+    primordia.load(mill).fork(200, tmp_path / "later", seasons=seasons)
     forked = after_the_fork(tmp_path / "fork", 250)
     assert forked == after_the_fork(tmp_path / "seasons", 250)
+    assert forked == after_the_fork(tmp_path / "later", 250)
+    assert same(tmp_path / "seasons", tmp_path / "later")
     assert forked != after_the_fork(mill, 250)
 
 

@@ -1,6 +1,6 @@
-"""Seasons of a fork: new ratchets look back as far as the fork, and no further.
+"""Seasons of a fork: new ratchets look back as far as the fork, and no further; old ones go on.
 
-That old ones go on looking back to their last look is tested with forks that change nothing.
+Forks of invented worlds are tested here, and lives in forks with seasons in `test_fork`.
 """
 
 from pathlib import Path
@@ -10,43 +10,23 @@ from typing import Any
 import jax.numpy as jnp
 import pytest
 
-import primordia
 from primordia.errors import InputError
 from primordia.law.metabolism import ONE
 from primordia.law.world import Organisms, World, Worlds
 from primordia.random.wide import to_host, wide
-from primordia.runs import fork, loop
+from primordia.runs import fork
 from tests.runs.forking import COUNTS, adapted
 from tests.worlds import HERD, MEADOW, config, law_of
 
 
-def ratchet(above: float, setting: str = "drain", every: int = 10) -> dict[str, Any]:
-    """Return a season that multiplies a setting by 2 if organisms gather more food than `above`."""
-    return {"kind": "ratchet", "setting": f"metabolism.{setting}", "when": "food", "above": above,
-            "factor": 2.0, "every": every}  # fmt: skip
+def ratchet(above: float) -> dict[str, Any]:
+    """Return a season that multiplies the drain by 2 if organisms gather more food than `above`."""
+    return {"kind": "ratchet", "setting": "metabolism.drain", "when": "food", "above": above,
+            "factor": 2.0, "every": 10}  # fmt: skip
 
 
-def meadow(food: float, **more: Any) -> dict[str, Any]:
-    """Return settings of worlds with one organism each, which lives on and has no children."""
-    still = {"replication": 0.0, "hazard": 1e-9, "metabolism": {"store": 1000.0, "drain": 0.25}}
-    return {**HERD, **still, "habitat": {**HERD["habitat"], "food": food}, **more}
-
-
-def test_a_new_ratchet_counts_food_since_the_fork(tmp_path: Path) -> None:
-    """Before the fork the meadow had no food."""
-    loop.start(config(meadow(0.0), stop={"ticks": 40}), tmp_path / "run")
-    seasons = [ratchet(0.4, every=20), ratchet(0.6, "store", 20)]
-    changes = {"seasons": seasons, "habitat": {"food": 1.0}, "sample_every": 5}
-    forked = primordia.load(tmp_path / "run").fork(
-        40, tmp_path / "fork", **changes, stop={"ticks": 85}
-    )
-    metrics = forked.arrays("metrics")
-    here = metrics["world"] == 2
-    for setting, first in (("drain", 0.25), ("store", 1000.0)):
-        values = metrics[f"metabolism.{setting}"][here].tolist()
-        now = dict(zip(metrics["tick"][here].tolist(), values, strict=True))
-        turns = [now[tick] / first for tick in (45, 55, 60, 75, 80)]
-        assert turns == [1, 1, 2, 2, 4]
+def meadow(**more: Any) -> dict[str, Any]:
+    return {**MEADOW, "seeds": 2, "metabolism": {"store": 1000.0, "drain": 0.25}, **more}
 
 
 @pytest.mark.parametrize("setting", ["gain", "store", "drain", "effort_cost", "cap"])
@@ -79,7 +59,7 @@ def test_hunger_that_is_added_to_a_world_begins_with_full_stores() -> None:
 
 def looks_of(at: int, old: list[dict[str, Any]], new: list[dict[str, Any]]) -> Any:
     """Return the looks of a fork that has other seasons than before."""
-    before, after = (config(meadow(1.0, seeds=2, seasons=seasons)) for seasons in (old, new))
+    before, after = (config(meadow(seasons=seasons)) for seasons in (old, new))
     return adapted(at, before, after).looks
 
 
@@ -120,4 +100,4 @@ def test_ratchets_begin_to_count_at_the_fork_if_any_season_has_changed(
 )
 def test_a_changed_metabolism_fills_no_store(changed: dict[str, float]) -> None:
     """All organisms keep their energy, as `adapted` asserts of every fork."""
-    adapted(10, config(meadow(1.0, seeds=2)), config(meadow(1.0, seeds=2, metabolism=changed)))
+    adapted(10, config(meadow()), config(meadow(metabolism=changed)))
