@@ -41,6 +41,20 @@ CLOCKWORK: dict[str, Any] = {
 }
 """A task in which no random draw matters: all cells are filled, all starve in tick 31, and so on."""
 
+HERD: dict[str, Any] = {
+    **MEADOW,
+    "habitat": {"name": "tests.toys:Meadow", "lifespan": 90},
+    "brain": {"hidden": 1},
+    "placement": {"topology": "torus8"},
+    "cells": 24,
+    "seeds": 3,
+    "replication": 0.05,
+    "hazard": 0.01,
+    "metabolism": {"store": 400.0},
+    "sample_every": 10,
+}
+"""Three small worlds with births, copies and deaths of several causes, for tests of what is recorded."""
+
 
 def config(base: str | dict[str, Any] = "CartPole-survival", **settings: Any) -> Config:
     """Return the settings of a task, given by name or as values, with some of them changed."""
