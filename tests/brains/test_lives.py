@@ -34,6 +34,7 @@ def test_organisms_with_the_brain_live_and_evolve_and_are_rebuilt(
     assert_rebuilt(tmp_path / "run")
 
 
+@pytest.mark.slow
 @EVERY
 def test_organisms_live_the_same_in_a_jax_habitat_and_on_the_host(name: str) -> None:
     values = {**MILL, **LIVING, "brain": TABLES[name], "seeds": 2}

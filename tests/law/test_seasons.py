@@ -312,6 +312,7 @@ def test_a_season_of_what_seasons_cannot_change_is_refused(setting: str, nearest
     assert nearest in str(error.value)
 
 
+@pytest.mark.slow
 def test_break_even_follows_the_present_settings_of_the_world(tmp_path: Path) -> None:
     """Break-even food keeps energy constant: drain over gain, per tick and per second."""
     season = {"kind": "schedule", "setting": "metabolism.gain", "at": 20, "value": 0.5}
