@@ -3,17 +3,25 @@
 from collections import Counter
 from typing import Any
 
+import jax
 import numpy as np
 import pytest
+from jax import Array
 
 from primordia.random.wide import happened, to_host
 from tests.chance import binomial
 from tests.chronicle import History
+from tests.toys import Meadow
 from tests.worlds import MEADOW, Lived, config
 
+KEPT, EVERY = 4, 3
 
-def meadow(**habitat: Any) -> dict[str, Any]:
-    return {"name": "tests.toys:Meadow", **habitat}
+
+class Clock(Meadow):
+    """A meadow whose bodies perceive their age."""
+
+    def sense(self, bodies: Array) -> Array:
+        return bodies
 
 
 def placed(topology: str, rule: str, **values: Any) -> dict[str, Any]:
@@ -28,15 +36,16 @@ HISTORIES: dict[str, dict[str, Any]] = {
         "empty-only",
         hazard=0.05,
         metabolism=ENERGY,
-        habitat=meadow(food=0.3, effort=0.7, lifespan=46),
-        mutation={"probability": 1.0},
+        habitat={"name": f"{__name__}:Clock", "food": 0.3, "effort": 0.7, "lifespan": 46},
+        mutation={"kind": "calibrated", "probability": 1.0, "remembered": KEPT, "every": EVERY},
+        brain={"hidden": 3},
     ),
     "control": placed(
         "well-mixed",
         "replacing",
         hazard=0.02,
         metabolism={"store": 10.0, "gain": 3.0, "cap": 25.5},
-        habitat=meadow(food=1.0),
+        habitat={"name": "tests.toys:Meadow", "food": 1.0},
         inheritance="founder",
         mutation={"founder_scale": 0.5},
     ),
@@ -115,6 +124,50 @@ def test_newborns_begin_with_a_fresh_body_and_an_empty_memory() -> None:
     np.testing.assert_array_equal(np.asarray(bodies)[alive, 0], age)
     memory = np.asarray(organisms.memory)[alive]
     np.testing.assert_array_equal((memory == 0).all(axis=1), age == 0)
+
+
+def test_a_world_remembers_what_it_senses_at_its_ticks() -> None:
+    """Children have the moments of their parents, and founders none."""
+    lived = Lived(config(MEADOW, **HISTORIES["torus8"]), 1)
+    before: Any = None
+    inherited = 0
+    for tick in range(2, 60):
+        lived.advance_to(tick)
+        (organisms, _), bodies = lived.engine.state
+        now = jax.tree.map(np.asarray, organisms.moments)
+        alive, born = np.asarray(organisms.alive), np.asarray(organisms.born.lo) == tick
+        place = tick // EVERY % KEPT
+        due = tick % EVERY == 0
+        if due:
+            assert now.known[alive, place].all()
+            np.testing.assert_array_equal(now.senses[alive, place], np.asarray(bodies)[alive])
+            memory = np.asarray(organisms.memory)[alive]
+            np.testing.assert_array_equal(now.memory[alive, place], memory)
+        if before is not None:
+            places = [each for each in range(KEPT) if not (due and each == place)]
+            older = alive & ~born
+            for one, other in zip(now, before, strict=True):
+                np.testing.assert_array_equal(one[older][:, places], other[older][:, places])
+            inherited += assert_of_parents(lived, tick, before, now, places)
+        before = now
+    assert inherited > 20
+
+
+def assert_of_parents(lived: Lived, tick: int, before: Any, now: Any, places: list[int]) -> int:
+    """Compare the children of a tick with their parents; return how many there are."""
+    births = lived.table("births")
+    cells = births["cell"] + 12 * births["world"].astype(int)
+    children = np.flatnonzero(births["tick"] == tick)
+    for row in children:
+        cell = cells[row]
+        if births["cause"][row] == "founder":
+            assert not now.known[cell][places].any()
+            continue
+        own = (births["id"] == births["parent"][row]) & (births["world"] == births["world"][row])
+        parent = cells[np.flatnonzero(own)[0]]
+        for one, other in zip(now, before, strict=True):
+            np.testing.assert_array_equal(one[cell][places], other[parent][places])
+    return len(children)
 
 
 def test_energy_is_accounted_for_to_the_unit(histories: dict[str, list[History]]) -> None:
