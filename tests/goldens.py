@@ -288,10 +288,10 @@ def others() -> Iterator[tuple[str, Case]]:
     ancestors: dict[str, Any] = {"genesis": "fill", "ancestors": ((9, 3), (11,))}
     yield "ancestors", poles(**ancestors)
     yield (
-        "host-ancestors-ring",
+        "host-ancestors-well-mixed",
         poles(
             habitat={"name": "tests.toys:Clocked"},
-            placement={"rule": "empty-only", "topology": "ring"},
+            placement={"rule": "empty-only", "topology": "well-mixed"},
             **ancestors,
         ),
     )

@@ -7,7 +7,7 @@ import pytest
 from tests.goldens import others, placements
 from tests.test_goldens import assert_lives_as_it_did, marked
 
-SHOWN = {"host-ancestors-ring", "seasons-blocks-torus8-worlds"}
+SHOWN = {"host-ancestors-well-mixed", "seasons-blocks-torus8-worlds"}
 """Laws that have together two rules, both kinds of season, blocks, ancestors and a habitat on the host.
 
 Tasks have the third rule, and an entry of the gallery has children without heredity.

@@ -19,7 +19,17 @@ def texts(outputs: list[dict[str, Any]]) -> list[str]:
     return ["".join(each) for each in lines]
 
 
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+SHOWN = "first-steps"
+"""It lives in the law of the README. Others are slow."""
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        pytest.param(path, id=path.stem, marks=() if path.stem == SHOWN else pytest.mark.slow)
+        for path in NOTEBOOKS
+    ],
+)
 @pytest.mark.filterwarnings("default")  # a notebook shows a warning, and goes on
 def test_a_notebook_gives_what_stands_in_its_file(
     path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
