@@ -218,10 +218,7 @@ def tasks() -> Iterator[tuple[str, Case]]:
     yield "pong-random", game("Pong-survival", habitat=random, evaluate=played)
     yield "Pong-survival-forager", game("Pong-survival-forager", **HUNGRY)
     yield "Breakout-survival-forager", game("Breakout-survival-forager", **HUNGRY)
-    yield (
-        "breakout-random-forager",
-        game("Breakout-survival-forager", habitat=random, evaluate=played, **HUNGRY),
-    )
+    yield "breakout-random-forager", game("Breakout-survival-forager", habitat=random, **HUNGRY)
     yield "BattleZone-survival", game("BattleZone-survival")
     yield "BattleZone-survival-forager", game("BattleZone-survival-forager", **HUNGRY)
     finer = {"seasons": [scheduled("mutation.probability", 100, 0.1)]}
@@ -288,8 +285,9 @@ def others() -> Iterator[tuple[str, Case]]:
     ancestors: dict[str, Any] = {"genesis": "fill", "ancestors": ((9, 3), (11,))}
     yield "ancestors", poles(**ancestors)
     yield (
-        "host-ancestors-well-mixed",
+        "host-ancestors-founder-well-mixed",
         poles(
+            inheritance="founder",
             habitat={"name": "tests.toys:Clocked"},
             placement={"rule": "empty-only", "topology": "well-mixed"},
             **ancestors,

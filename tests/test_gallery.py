@@ -43,13 +43,8 @@ def test_the_commands_of_an_entry_are_well_formed(
             assert flag != "--ancestor" or Path(file).exists()
 
 
-@pytest.mark.parametrize(
-    "entry",
-    [
-        pytest.param(entry, id=entry["name"], marks=() if entry.get("quick") else pytest.mark.slow)
-        for entry in ENTRIES
-    ],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("entry", ENTRIES, ids=lambda entry: entry["name"])
 def test_an_entry_lives_as_it_did(
     entry: dict[str, Any], make: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -14,9 +14,11 @@ from tests.goldens import CASES, FILE, entries, live, tasks
 GOLDENS: dict[str, Any] = json.loads(FILE.read_text(encoding="utf-8"))
 PLAYS: dict[str, Any] = json.loads(plays.FILE.read_text(encoding="utf-8"))
 
-SHOWN = {"CartPole-survival", "resumed", "fork", "fork-of-fork", "breakout-random-forager",
-         "HalfCheetah-forager-ratchet"}  # fmt: skip
-"""Tasks of each kind: what is drawn at random, what feeds, what seasons change. Others are slow."""
+SHOWN = {"CartPole-survival", "resumed", "fork", "fork-of-fork", "breakout-random-forager"}
+"""Tasks in JAX and on the host, what is drawn at random, and what feeds. Others are slow.
+
+Every simulator is played below, and laws have seasons.
+"""
 
 
 def marked(cases: Iterable[tuple[str, Any]], shown: set[str]) -> list[Any]:

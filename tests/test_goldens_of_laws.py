@@ -7,11 +7,9 @@ import pytest
 from tests.goldens import others, placements
 from tests.test_goldens import assert_lives_as_it_did, marked
 
-SHOWN = {"host-ancestors-well-mixed", "seasons-blocks-torus8-worlds"}
-"""Laws that have together two rules, both kinds of season, blocks, ancestors and a habitat on the host.
-
-Tasks have the third rule, and an entry of the gallery has children without heredity.
-"""
+SHOWN = {"host-ancestors-founder-well-mixed", "seasons-blocks-torus8-worlds"}
+"""Laws that have together two rules, both kinds of season, blocks, ancestors, children without heredity
+and a habitat on the host. Tasks have the third rule."""
 
 
 @pytest.mark.parametrize("name", marked([*placements(), *others()], SHOWN))

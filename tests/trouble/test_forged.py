@@ -74,19 +74,10 @@ ODD: list[Any] = [
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Make a folder with a run of closed segments and an open tail, its fork, and a twin."""
     folder = tmp_path_factory.mktemp("forged")
-    settings: dict[str, Any] = {
-        **MILL,
-        "brain": {"hidden": 2},
-        "cells": 6,
-        "seeds": 2,
-        "replication": 0.2,
-        "hazard": 0.05,
-        "metabolism": {"store": 100.0},
-        "stop": {"ticks": 120},
-        "sample_every": 10,
-    }
+    lively = {"replication": 0.2, "hazard": 0.05, "metabolism": {"store": 100.0}}
+    settings = config(MILL, seeds=2, **lively, stop={"ticks": 120})
     for name in ("run", "twin"):
-        loop.start(config(settings), folder / name)
+        loop.start(settings, folder / name)
     done = here("fork", folder / "run", "--at", 50, "--out", folder / "fork", "--quiet")
     assert done.returncode == 0, done.stderr
     return folder
