@@ -7,8 +7,9 @@ import pytest
 from tests.goldens import others, placements
 from tests.test_goldens import assert_lives_as_it_did, marked
 
-SHOWN = {"empty-only-ring", "replacing-well-mixed-worlds", "ratchets-blocks", "ancestors"}
-"""Laws with rules, topologies, seasons and ancestors; others are slow."""
+SHOWN = {"host-ancestors-founder-well-mixed", "seasons-blocks-torus8-worlds"}
+"""Laws that have together two rules, both kinds of season, blocks, ancestors, children without heredity
+and a habitat on the host. Tasks have the third rule."""
 
 
 @pytest.mark.parametrize("name", marked([*placements(), *others()], SHOWN))
