@@ -177,7 +177,9 @@ class Lives:
 
     def _rows_of_world(self, world: int) -> slice:
         # Numbers of another dtype would make NumPy convert all rows.
-        ends = [self.world.dtype.type(min(max(each, 0), self.worlds)) for each in (world, world + 1)]
+        ends = [
+            self.world.dtype.type(min(max(each, 0), self.worlds)) for each in (world, world + 1)
+        ]
         return slice(*map(int, np.searchsorted(self.world, ends)))
 
 
