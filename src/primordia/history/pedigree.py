@@ -8,6 +8,7 @@ never selected (Bedau & Packard 1992).
 
 from collections import Counter
 
+import jax
 import numpy as np
 from jax import Array
 
@@ -55,7 +56,7 @@ class _Pedigree:
         self._repeat = shared(_repeat, run.heredity, self._redraws_notes)
         seeds = wide(run.world_seeds)
         seeds = stream(seeds, Purpose.SHADOW, wide(0)) if redrawn else seeds
-        self._seeds = seeds.map(np.asarray)  # JAX takes entries ten times as slowly
+        self._seeds = jax.device_get(seeds)  # JAX takes entries ten times as slowly
 
     def genomes(self, rows: np.ndarray) -> np.ndarray:
         """Return the genomes of organisms of one world, (K, P)."""
