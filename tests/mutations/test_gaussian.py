@@ -11,7 +11,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from primordia.brains.layout import Layout
-from primordia.compiled import jit
 from primordia.mutations.calibrated import Calibrated
 from primordia.mutations.contract import Draws, Family
 from primordia.mutations.gaussian import Block, Gaussian
@@ -20,6 +19,7 @@ from primordia.random.gaussian import quantiles
 from primordia.random.keys import Purpose, Streams, bits, chance, stream, streams
 from primordia.random.wide import Wide, wide
 from tests.chance import binomial
+from tests.mutations.families import inherited
 from tests.worlds import MEADOW, Lived, config
 
 K, P = 64, 1001
@@ -39,7 +39,14 @@ def drawn(seed: int = 3, tick: int = 11, count: int = K) -> Streams:
 
 def noise(which: Wide, cells: np.ndarray | None = None, length: int = P) -> np.ndarray:
     cells = np.arange(len(which.hi)) if cells is None else cells
-    return quantiles()[np.asarray(noise_index(which, jnp.asarray(cells), length))]
+    return quantiles()[index(which, cells, length)]
+
+
+def index(which: Wide, cells: np.ndarray, length: int) -> np.ndarray:
+    return np.asarray(INDEX(which, cells, length))
+
+
+INDEX, CHANCE = jax.jit(noise_index, static_argnums=2), jax.jit(chance)
 
 
 def test_the_table_of_noise_is_the_standard_gaussian() -> None:
@@ -94,7 +101,7 @@ def test_each_weight_takes_its_noise_from_its_place_in_the_table(length: int) ->
             pair = bits(which.take(row), cell, i % m)
             word = int((pair.hi, pair.hi, pair.lo, pair.lo)[i // m])
             expected[row, i] = word >> 16 if (i // m) % 2 else word & 0xFFFF
-    np.testing.assert_array_equal(noise_index(which, jnp.asarray(cells), length), expected)
+    np.testing.assert_array_equal(index(which, cells, length), expected)
 
 
 def test_noise_does_not_depend_on_other_births() -> None:
@@ -103,13 +110,13 @@ def test_noise_does_not_depend_on_other_births() -> None:
     np.testing.assert_array_equal(noise(drawn(count=3)[Purpose.NOISE], some), all_of_them[some])
 
 
-def rates(layout: Layout, probability: object, scale: object, count: int) -> dict[str, jax.Array]:
+def rates(layout: Layout, probability: object, scale: object, count: int) -> dict[str, np.ndarray]:
     """Return the rates of K equal births, from one value for all blocks or one for each."""
     table = {}
     for field, values in (("probability", probability), ("scale", scale)):
         each = np.broadcast_to(np.array(values, np.float32), len(layout.names))
         for block, value in zip(layout.names, each, strict=True):
-            table[f"blocks.{block}.{field}"] = jnp.full(count, value, jnp.float32)
+            table[f"blocks.{block}.{field}"] = np.full(count, value, np.float32)
     return table
 
 
@@ -117,11 +124,9 @@ def children(
     layout: Layout, parents: np.ndarray, probability: object, scale: object = 1.0
 ) -> tuple[np.ndarray, np.ndarray]:
     count = len(parents)
-    draws = Draws(drawn(count=count), jnp.arange(count))
-    notes = jnp.zeros((count, 0), jnp.int32)
-    table = rates(layout, probability, scale, count)
-    made = Gaussian().inherit(layout, Family(jnp.asarray(parents), notes, table, draws))
-    return np.asarray(made[0]), np.asarray(made[1])
+    draws = Draws(drawn(count=count), np.arange(count, dtype=np.int32))
+    notes, table = np.zeros((count, 0), np.int32), rates(layout, probability, scale, count)
+    return inherited(Gaussian(), layout, Family(parents, notes, table, draws))
 
 
 @pytest.mark.parametrize("probability", [0.0, 0.1, 0.5, 0.999, 1.0])
@@ -200,22 +205,14 @@ def test_children_are_those_of_numpy_bit_for_bit(
     parents = (rng.normal(size=(K, P)) * rng.choice([1e-3, 1, 100], (K, 1))).astype(np.float32)
     parents[0, :5] = [0.0, -0.0, np.nan, np.inf, -np.inf]
     scales = np.float32(scale) * np.array([1, 0.3, 0.7], np.float32)
-    word = bits(drawn()[Purpose.MUTATE], jnp.arange(K)).hi
-    takes = np.asarray(chance(word[:, None], jnp.array([probability], jnp.float32)))
+    word = bits(drawn()[Purpose.MUTATE], np.arange(K)).hi
+    takes = np.asarray(CHANCE(np.asarray(word)[:, None], np.float32([probability])))
     change = noise(drawn()[Purpose.NOISE]) * np.repeat(scales, LAYOUT.sizes)
     with np.errstate(invalid="ignore"):
         expected = np.where(np.repeat(takes, LAYOUT.sizes, axis=1), parents + change, parents)
     genomes, mutated = children(LAYOUT, parents, probability, scales)
     same_bits(genomes, expected)
     np.testing.assert_array_equal(mutated, takes.any(axis=1))
-
-
-def test_children_made_in_a_compiled_function_have_the_same_bits() -> None:
-    parents = np.random.default_rng(1).normal(size=(K, P)).astype(np.float32)
-    draws, notes = Draws(drawn(), jnp.arange(K)), jnp.zeros((K, 0), jnp.int32)
-    inherit = jit(lambda family: Gaussian().inherit(LAYOUT, family))
-    made, _ = inherit(Family(jnp.asarray(parents), notes, rates(LAYOUT, 0.5, 0.3, K), draws))
-    same_bits(np.asarray(made), children(LAYOUT, parents, 0.5, 0.3)[0])
 
 
 def test_founders_are_noise_of_their_blocks_scales() -> None:
@@ -282,10 +279,10 @@ def test_genomes_in_a_world_are_those_of_numpy_bit_for_bit(family: Lived) -> Non
     genome = weights(family)
     sizes = [block.shape[1] for block in genome.values()]
     lived = np.concatenate(list(genome.values()), axis=1)
-    cells, ticks = jnp.asarray(births["cell"]), wide(births["tick"])
+    cells, ticks = births["cell"].astype(np.int32), wide(births["tick"])
     drawn = streams(name(family.config.seed, 256), ticks, *GENETIC)
     word = bits(drawn[Purpose.MUTATE], cells).hi
-    takes = np.asarray(chance(word[:, None], jnp.array([PROBABILITIES], jnp.float32)))
+    takes = np.asarray(CHANCE(np.asarray(word)[:, None], np.float32([PROBABILITIES])))
     takes, scale = np.repeat(takes, sizes, axis=1), np.repeat(np.float32(SCALES), sizes)
     spread = np.repeat(np.float32(FOUNDER_SCALES), sizes)
     same_bits((noise(drawn[Purpose.FOUNDER], cells, lived.shape[1]) * spread)[0], lived[0])
