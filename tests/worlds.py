@@ -58,7 +58,7 @@ HERD: dict[str, Any] = {
 
 RING: dict[str, Any] = {
     **MEADOW,
-    "brain": {"hidden": 1},
+    "brain": {"hidden": 3},
     "cells": 12,
     "seeds": 4,
     "replication": 0.05,

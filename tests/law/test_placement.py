@@ -19,7 +19,7 @@ from tests.chronicle import reach
 TOPOLOGIES = ["ring", "torus4", "torus8", "well-mixed"]
 RULES = ["blind", "empty-only", "replacing"]
 ALL = list(product(TOPOLOGIES, RULES))
-W, N = 24_000, 12  # a torus of 3 x 4
+W, N = 12_000, 12  # a torus of 3 x 4
 ROUNDS = N + 1
 
 
@@ -105,7 +105,7 @@ def test_two_contenders_win_equally_often(rule: str) -> None:
     parents, picked = many(rule, "ring", [1])
     contested = (picked[:, [0, 2]] == 1).all(axis=1) | (rule == "empty-only")
     winners = np.bincount(parents[contested, 1], minlength=N)
-    assert winners.sum() == winners[[0, 2]].sum() > 5000
+    assert winners.sum() == winners[[0, 2]].sum() > 2000
     assert even(winners[[0, 2]])
 
 

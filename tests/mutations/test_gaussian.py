@@ -20,7 +20,7 @@ from primordia.random.keys import Purpose, Streams, bits, chance, stream, stream
 from primordia.random.wide import Wide, wide
 from tests.chance import binomial
 from tests.mutations.families import inherited
-from tests.worlds import MEADOW, Lived, config
+from tests.worlds import RING, Lived, config
 
 K, P = 64, 1001
 GENETIC = Purpose.MUTATE, Purpose.NOISE, Purpose.FOUNDER
@@ -232,60 +232,36 @@ def test_a_copy_is_its_parent_to_the_last_bit() -> None:
 
 
 SCALES, PROBABILITIES = [0.3, 0.25, 0.01], [0.0, 0.6, 0.3]
-FOUNDER_SCALES = [1.0, 0.1, 0.4]
 
 
-@pytest.fixture(scope="module")
-def family() -> Lived:
-    """Live a world without deaths, so that every child can be compared with its parent."""
-    blocks = {
-        name: {"scale": scale, "probability": probability}
-        for name, scale, probability in zip(NAMES, SCALES, PROBABILITIES, strict=True)
-    }
-    blocks["recurrent"]["founder_scale"] = FOUNDER_SCALES[1]
-    blocks["output"]["founder_scale"] = FOUNDER_SCALES[2]
-    mutation = {"founder_scale": FOUNDER_SCALES[0], "blocks": blocks}
-    values = {"cells": 256, "replication": 0.3, "placement": {"topology": "well-mixed"}}
-    lived = Lived(config(MEADOW, mutation=mutation, **values), 100)
-    assert lived.table("births")["id"].tolist() == list(range(256))
-    return lived
-
-
-def weights(family: Lived) -> dict[str, np.ndarray]:
-    """Return the blocks of weights, with a row for each organism in order of birth."""
-    cells, genome = family.table("births")["cell"], family.engine.state.world.organisms.genome
-    return {block: np.asarray(genome[block]).reshape(256, -1)[cells] for block in NAMES}
-
-
-def test_children_differ_from_their_parents_as_the_settings_of_blocks_say(family: Lived) -> None:
-    births, genome = family.table("births"), weights(family)
-    parents = births["parent"][1:].astype(int)
-    change = {name: block[1:] - block[parents] for name, block in genome.items()}
-    moved = {name: (each != 0).any(axis=1) for name, each in change.items()}
-    assert not moved["input"].any()
-    assert binomial(int(moved["recurrent"].sum()), 255, 0.6)
-    assert binomial(int(moved["output"].sum()), 255, 0.3)
-    assert moved["recurrent"][moved["output"]].all()
-    np.testing.assert_array_equal(births["cause"][1:] == "mutant", moved["recurrent"])
-    for name, scale in (("recurrent", 0.25), ("output", 0.01)):
-        values = change[name][moved[name]]
-        assert values.std() == pytest.approx(scale, rel=5 / np.sqrt(2 * values.size))
-    for block, scale in zip(genome.values(), FOUNDER_SCALES, strict=True):
-        assert block[0].std() == pytest.approx(scale, rel=5 / np.sqrt(2 * block[0].size))
-
-
-def test_genomes_in_a_world_are_those_of_numpy_bit_for_bit(family: Lived) -> None:
-    births = family.table("births")
-    genome = weights(family)
-    sizes = [block.shape[1] for block in genome.values()]
-    lived = np.concatenate(list(genome.values()), axis=1)
-    cells, ticks = births["cell"].astype(np.int32), wide(births["tick"])
-    drawn = streams(name(family.config.seed, 256), ticks, *GENETIC)
+def test_genomes_in_a_world_are_those_of_numpy_bit_for_bit() -> None:
+    """No organism dies, so that every child can be compared with its parent."""
+    lived = Lived(config(RING), 1)
+    lived.change({"replication": 1.0, "hazard": 0.0})
+    for block, scale, probability in zip(NAMES, SCALES, PROBABILITIES, strict=True):
+        own = {"scale": scale, "probability": probability}
+        lived.change({f"mutation.blocks.{block}.{rate}": value for rate, value in own.items()})
+    lived.advance_to(100)
+    births, layout = lived.table("births"), lived.engine.law.heredity.layout
+    assert len(births["id"]) == 48
+    cells, worlds = births["cell"].astype(np.int32), births["world"].astype(int)
+    genomes = lived.genomes()[12 * worlds + cells]
+    seeds = np.array(lived.config.world_seeds, np.uint64)[worlds]
+    drawn = streams(wide(seeds), wide(births["tick"]), *GENETIC)
     word = bits(drawn[Purpose.MUTATE], cells).hi
     takes = np.asarray(CHANCE(np.asarray(word)[:, None], np.float32([PROBABILITIES])))
-    takes, scale = np.repeat(takes, sizes, axis=1), np.repeat(np.float32(SCALES), sizes)
-    spread = np.repeat(np.float32(FOUNDER_SCALES), sizes)
-    same_bits((noise(drawn[Purpose.FOUNDER], cells, lived.shape[1]) * spread)[0], lived[0])
-    parents = lived[births["parent"][1:].astype(int)]
-    change = noise(drawn[Purpose.NOISE], cells, lived.shape[1])[1:] * scale
-    same_bits(np.where(takes[1:], parents + change, parents), lived[1:])
+    mutant = np.repeat(takes, layout.sizes, axis=1)
+    scale = np.repeat(np.float32(SCALES), layout.sizes)
+    of = {key: row for row, key in enumerate(zip(worlds, births["id"], strict=True))}
+    parents = births["parent"]
+    child = ~np.isnan(parents)
+    assert child.sum() == 44
+    rows = [
+        of[world, int(parent)] for world, parent in zip(worlds[child], parents[child], strict=True)
+    ]
+    founders = noise(drawn[Purpose.FOUNDER], cells, layout.length) * np.float32(0.01)
+    same_bits(genomes[~child], founders[~child])
+    change = noise(drawn[Purpose.NOISE], cells, layout.length) * scale
+    expected = np.where(mutant[child], genomes[rows] + change[child], genomes[rows])
+    same_bits(genomes[child], expected)
+    np.testing.assert_array_equal(births["cause"][child] == "mutant", takes[child].any(axis=1))
