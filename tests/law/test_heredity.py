@@ -54,7 +54,7 @@ def births(heredity: Heredity, founder: np.ndarray) -> Birth:
         number=wide(NUMBERS),
         draws=Draws(drawn, np.arange(K)),
         founder=founder,
-        rates={name: np.full(K, rate, np.float32) for name, rate in rates.items()},
+        rates={name: jnp.full(K, rate, jnp.float32) for name, rate in rates.items()},
     )
 
 

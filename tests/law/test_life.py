@@ -189,7 +189,7 @@ def test_the_motor_of_a_cell_draws_for_its_world_tick_and_place_in_the_world() -
 
 def drawn(purpose: Purpose, chances: list[float]) -> np.ndarray:
     """Return in which cells an event of tick 12 happens, from the words of the cells."""
-    words = of_cells([[5], [2**40]], purpose, 12, np.arange(6)).hi.astype(float)
+    words = np.asarray(of_cells([[5], [2**40]], purpose, 12, np.arange(6)).hi, float)
     return (words < np.array(chances)[:, None] * 2.0**32).ravel()
 
 
