@@ -252,10 +252,3 @@ class Organ(Mill):
         wheel, outcome = super().step(bodies[0], action[:, 1:] * released)
         clock = bodies[1] + 1
         return (wheel, clock), outcome._replace(expired=clock >= self.limit)
-
-
-class OrganOnHost(OnHost):
-    """The same habitat on the host."""
-
-    def __init__(self, **options: Any) -> None:
-        super().__init__(Organ(**options))

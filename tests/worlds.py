@@ -58,7 +58,7 @@ HERD: dict[str, Any] = {
 
 RING: dict[str, Any] = {
     **MEADOW,
-    "brain": {"hidden": 1},
+    "brain": {"hidden": 3},
     "cells": 12,
     "seeds": 4,
     "replication": 0.05,
@@ -111,11 +111,11 @@ class Lived:
             for name, table in zip(self.rows, events, strict=True):
                 self.rows[name].append(np.asarray(table.rows)[: int(table.filled)].copy())
 
-    def change(self, settings: dict[str, float]) -> None:
-        """Change settings of all worlds from now on, as seasons do; this compiles nothing."""
+    def change(self, settings: dict[str, Any]) -> None:
+        """Change settings of all worlds alike, or of each, as seasons do; this compiles nothing."""
         world, bodies = self.engine.state
-        count = self.config.seeds
-        new = {name: jnp.full(count, value, jnp.float32) for name, value in settings.items()}
+        every = np.ones(self.config.seeds, np.float32)
+        new = {name: jnp.asarray(every * np.float32(value)) for name, value in settings.items()}
         assert new.keys() <= world.worlds.climate.keys()
         worlds = world.worlds._replace(climate=world.worlds.climate | new)
         self.engine.state = type(self.engine.state)(world._replace(worlds=worlds), bodies)

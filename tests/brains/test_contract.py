@@ -79,72 +79,23 @@ def test_a_brain_keeps_the_contract(brain: Brain) -> None:
 
 
 @each_brain
-def test_an_organism_thinks_the_same_among_any_number(brain: Brain) -> None:
+def test_memory_and_every_block_of_a_genome_change_what_a_brain_thinks(brain: Brain) -> None:
+    """Memory does so in brains that have one."""
     genome, memory, senses = minds(brain)
     think = shared(thought, brain)
-    after, output = (np.asarray(each) for each in think(genome, memory, senses[0]))
-    shuffled = np.random.default_rng(3).permutation(MOST)
-    for some in (shuffled, np.arange(1), shuffled[:31]):
-        few = {name: block[some] for name, block in genome.items()}
-        few_after, few_output = think(few, memory[some], senses[0, some])
-        np.testing.assert_array_equal(few_after, after[some])
-        np.testing.assert_array_equal(few_output, output[some])
-
-
-@each_brain
-@pytest.mark.parametrize(("count", "compiled"), [(1, False), (31, True), (MOST, False)])
-def test_a_brain_thinks_the_same_inside_a_loop_and_outside(
-    brain: Brain, count: int, compiled: bool
-) -> None:
-    genome, memory, senses = minds(brain)
-    genome = {name: block[:count] for name, block in genome.items()}
-    memory, senses = memory[:count], senses[:, :count]
-    last, outputs = (np.asarray(each) for each in shared(lived, brain)(genome, memory, senses))
-    think = shared(thought, brain) if compiled else brain
-    for tick in range(TICKS):
-        memory, output = think(genome, memory, senses[tick])
-        np.testing.assert_array_equal(output, outputs[tick])
-    np.testing.assert_array_equal(memory, last)
-
-
-@each_brain
-def test_an_organism_that_is_not_finite_changes_no_other(brain: Brain) -> None:
-    genome, memory, senses = minds(brain)
-    think = shared(thought, brain)
-    whole = think(genome, memory, senses[0])
-    broken = {name: block.copy() for name, block in genome.items()}
-    for block in broken.values():
-        block[7] = np.nan
-    senses[0, 9] = np.inf
-    after = think(broken, memory, senses[0])
-    others = np.delete(np.arange(MOST), [7, 9])
-    assert np.isnan(after[1][7]).all()
-    for one, other in zip(after, whole, strict=True):
-        np.testing.assert_array_equal(one[others], other[others])
-
-
-@each_brain
-def test_memory_changes_what_a_brain_with_memory_thinks(brain: Brain) -> None:
-    genome, memory, senses = minds(brain)
-    _, output = brain(genome, memory, senses[0])
-    _, other = brain(genome, -memory, senses[0])
+    _, output = think(genome, memory, senses[0])
+    _, other = think(genome, -memory, senses[0])
     remembers = brain.memory(SENSES, OUTPUTS) > 0
     assert (np.abs(np.asarray(output) - other).max() > 0.1) == remembers
-
-
-@each_brain
-def test_every_block_of_a_genome_changes_what_a_brain_thinks(brain: Brain) -> None:
-    genome, memory, senses = minds(brain)
-    _, output = brain(genome, memory, senses[0])
     for name, block in genome.items():
-        _, other = brain({**genome, name: block + np.float32(0.5)}, memory, senses[0])
+        _, other = think({**genome, name: block + np.float32(0.5)}, memory, senses[0])
         assert (np.asarray(output) != other).any(axis=1).mean() > 0.9, name
 
 
 def fingerprint() -> str:
-    """Return a hash of what all brains think; the processes below print it."""
+    """Return a hash of what brains think; the process below prints it."""
     digest = sha256()
-    for brain in BRAINS.values():
+    for brain in (BRAINS[name] for name in QUICK):
         for each in jax.tree.leaves(shared(lived, brain)(*minds(brain))):
             digest.update(np.asarray(each).tobytes())
     return digest.hexdigest()

@@ -46,29 +46,40 @@ def test_founders_take_ancestors_in_turn(seed: int, number: int, count: int) -> 
     assert int(modulo(wide(seed) + wide(number), count)) == (seed + number) % 2**64 % count
 
 
-@pytest.mark.parametrize("inheritance", ["parent", pytest.param("founder", marks=pytest.mark.slow)])
+ANCESTORS = some(3)
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> primordia.Run:
+    """Two worlds that die out often, with ancestors from two files, which are then removed."""
+    folder = tmp_path_factory.mktemp("run")
+    files = [folder / "one", folder / "two"]
+    genomes.write(files[0], LAYOUT, ANCESTORS[:1], {})
+    genomes.write(files[1], LAYOUT, ANCESTORS[1:], {})
+    values = merged(MEADOW, SMALL | {"ancestors": [str(file) for file in files]})
+    loop.start(config(values, seed=2, hazard=0.2, seeds=2), folder / "run")
+    for file in files:  # the run has its own copy
+        file.unlink()
+    return primordia.load(folder / "run")
+
+
 def test_founders_of_a_run_have_the_genomes_of_its_ancestors(
-    tmp_path: Path, inheritance: str
+    run: primordia.Run, tmp_path: Path
 ) -> None:
     """Founders have the ancestors' genomes, bit for bit, also after an extinction."""
-    given_, run = some(3), tmp_path / "run"
-    genomes.write(tmp_path / "a.safetensors", LAYOUT, given_, {})
-    values = merged(MEADOW, SMALL | {"ancestors": [str(tmp_path / "a.safetensors")], "seed": 2})
-    values |= {"inheritance": inheritance, "hazard": 0.2, "seeds": 2}
-    loop.start(config(values), run)
-    (tmp_path / "a.safetensors").unlink()  # the run has its own copy
-    opened = primordia.load(run)
-    assert opened.info()["worlds"][0]["extinctions"] > 3
-    births = opened.table("births").to_pylist()
+    assert run.info()["worlds"][0]["extinctions"] > 3
+    births = run.table("births").to_pylist()
     founders = [birth for birth in births if birth["cause"] == "founder"]
     ends = [(birth["id"], birth["world"]) for birth in founders[:20] + founders[-20:]]
-    expected = given_[[(2 + number + world) % 3 for number, world in ends]]
-    np.testing.assert_array_equal(rebuild_all(Archive(run), ends), expected)
-    assert verify(Archive(run)) == []
-    again = primordia.run(str(run / "config.toml"), tmp_path / "again")
-    assert [w["digest"] for w in again.info()["worlds"]] == [
-        w["digest"] for w in opened.info()["worlds"]
-    ]
+    expected = ANCESTORS[[(2 + number + world) % 3 for number, world in ends]]
+    np.testing.assert_array_equal(rebuild_all(Archive(run.path), ends), expected)
+    first = LAYOUT.split(expected[0])
+    for name, block in run.organism(*ends[0]).policy().weights.items():
+        np.testing.assert_array_equal(block, first[name])
+    assert verify(Archive(run.path)) == []
+    again = primordia.run(str(run.path / "config.toml"), tmp_path / "again")
+    digests, before = ([w["digest"] for w in each.info()["worlds"]] for each in (again, run))
+    assert digests == before
 
 
 @pytest.mark.slow
@@ -83,28 +94,16 @@ def test_genomes_that_descend_from_ancestors_are_rebuilt_by_the_same_code(
     assert caplog.text.count("Finished XLA compilation of jit(_replay_births)") == 1
 
 
-def test_a_run_starts_from_an_exported_genome(tmp_path: Path) -> None:
-    run = primordia.run("CartPole-survival", tmp_path / "run", stop={"ticks": 200})
-    file = tmp_path / "two.safetensors"
-    done = here("export", run.path, "--organism", 3, "--organism", 5, file)
-    assert (done.returncode, done.stdout) == (0, f"{file}: organism 3, 5\n")
-    done = here(
-        "run", "CartPole-survival", "--ancestor", file, "--genesis", "fill", "--ticks", 1,
-        "--out", tmp_path / "next", "--quiet",
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    child = primordia.load(tmp_path / "next")
-    for organism in range(4):
-        np.testing.assert_array_equal(child.rebuild(organism), run.rebuild([3, 5][organism % 2]))
-
-
-def test_export_takes_the_longest_life(tmp_path: Path) -> None:
-    run = primordia.run("CartPole-survival", tmp_path / "run", stop={"ticks": 200})
-    file = tmp_path / "one.safetensors"
-    assert here("export", run.path, file).returncode == 0
-    layout = config().build_layout(config().build_habitat())
-    oldest = run.rebuild(run.oldest().id)
-    np.testing.assert_array_equal(genomes.read([str(file)], layout)[0], oldest)
+def test_organisms_are_exported_in_the_given_order_or_the_longest_life(
+    run: primordia.Run, tmp_path: Path
+) -> None:
+    two, one = "two", "one"
+    done = here("export", run.path, "--organism", 5, "--organism", 30, tmp_path / two)
+    assert (done.returncode, done.stdout) == (0, f"{tmp_path / two}: organism 5, 30\n")
+    assert here("export", run.path, tmp_path / one).returncode == 0
+    for file, organisms in ((two, (5, 30)), (one, (run.oldest().id,))):
+        found = genomes.read([str(tmp_path / file)], LAYOUT)
+        np.testing.assert_array_equal(found, [run.rebuild(organism) for organism in organisms])
 
 
 def broken(path: Path, kind: str) -> None:
@@ -161,10 +160,11 @@ def test_ancestors_are_looked_for_beside_the_settings_file(tmp_path: Path) -> No
     assert load(str(file)).ancestors == (str(tmp_path / "x.safetensors"),)
 
 
-def test_wrong_input_to_export_is_an_error_that_says_why(tmp_path: Path) -> None:
+def test_wrong_input_to_export_is_an_error_that_says_why(
+    run: primordia.Run, tmp_path: Path
+) -> None:
     complains(here("run", "CartPole-survival", "--ancestor", tmp_path / "no"), 2, "no genome file")
-    run = primordia.run("CartPole-survival", tmp_path / "run", stop={"ticks": 50})
-    done = here("export", run.path, "--organism", 999, tmp_path / "x.safetensors")
-    complains(done, 2, "no organism 999 was born in world 0")
+    done = here("export", run.path, "--organism", 99999, tmp_path / "x.safetensors")
+    complains(done, 2, "no organism 99999 was born in world 0")
     complains(here("export", run.path, "--world", 3, tmp_path / "x"), 2, "no world 3")
     complains(here("export", run.path, tmp_path / "no" / "x"), 1, "cannot be written")

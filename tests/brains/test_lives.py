@@ -9,19 +9,13 @@ import pytest
 from primordia.runs import loop
 from tests.brains.test_contract import TABLES
 from tests.history.test_lineage import assert_rebuilt
-from tests.worlds import CLOCKWORK, MILL, Lived, config
+from tests.worlds import MILL, Lived, config
 
+pytestmark = pytest.mark.slow
 EVERY = pytest.mark.parametrize(
-    "name",
-    [
-        "gated, biases",
-        *(
-            pytest.param(name, marks=pytest.mark.slow)
-            for name in ("recurrent, biases", "linear", "not ours")
-        ),
-    ],
+    "name", ["gated, biases", "recurrent, biases", "linear", "not ours"]
 )
-"""Brains of different kinds; the gated one, which has every part, stands for all in the quick tests."""
+"""Brains of different kinds. The law treats all alike, so that the quick tests live with few."""
 LIVING: dict[str, Any] = {"replication": 0.3, "hazard": 0.03, "metabolism": None, "seasons": []}
 
 
@@ -34,7 +28,6 @@ def test_organisms_with_the_brain_live_and_evolve_and_are_rebuilt(
     assert_rebuilt(tmp_path / "run")
 
 
-@pytest.mark.slow
 @EVERY
 def test_organisms_live_the_same_in_a_jax_habitat_and_on_the_host(name: str) -> None:
     values = {**MILL, **LIVING, "brain": TABLES[name], "seeds": 2}
@@ -45,17 +38,3 @@ def test_organisms_live_the_same_in_a_jax_habitat_and_on_the_host(name: str) -> 
             np.concatenate(one.rows[table]), np.concatenate(other.rows[table])
         )
     assert len(one.table("births")["id"]) > 100
-
-
-@EVERY
-def test_memory_is_zero_at_birth(name: str) -> None:
-    """In CLOCKWORK all organisms starve in tick 31, and then every cell is filled again."""
-    lived = Lived(config({**CLOCKWORK, "brain": TABLES[name]}), 30)
-
-    def memory() -> np.ndarray:
-        return np.asarray(lived.engine.state.world.organisms.memory)
-
-    assert memory().shape == (32, lived.engine.law.memory)
-    assert memory().all()
-    lived.advance_to(31)
-    assert not memory().any()

@@ -1,7 +1,9 @@
 """The climate of invented worlds: how ratchets and schedules change it, and which settings it has."""
 
+from functools import partial
 from typing import Any
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -31,19 +33,18 @@ def posed(law: Law, wait: list[list[int]], **looks: Any) -> World:
     """Return worlds of 4, 5 and 6 organisms of age 10, with other values for their looks."""
     world = begin(law, np.arange(W, dtype=np.uint64), tick=TICK)
     alive = np.arange(N) < np.array([4, 5, 6])[:, None]
-    organisms = world.organisms._replace(
-        alive=jnp.asarray(alive.ravel()), born=wide(np.full(W * N, TICK - 10))
-    )
+    organisms = world.organisms._replace(alive=alive.ravel(), born=wide(np.full(W * N, TICK - 10)))
     worlds = world.worlds._replace(
         food=wide([100 * ONE, 50 * ONE, -ONE]),
         organism_ticks=wide([400, 300, 200]),
-        looks=world.worlds.looks._replace(wait=jnp.asarray(wait, jnp.int32), **looks),
+        looks=world.worlds.looks._replace(wait=np.array(wait, np.int32).reshape(W, -1), **looks),
     )
     return World(organisms, worlds)
 
 
 def applied(law: Law, world: World, running: tuple[bool, ...] = (True,) * W) -> tuple[Worlds, list]:
-    worlds, changed = apply_seasons(law.seasons, law.governed, world, jnp.array(running))
+    apply = jax.jit(partial(apply_seasons, law.seasons, law.governed))
+    worlds, changed = apply(world, np.array(running))
     return worlds, changed.tolist()
 
 

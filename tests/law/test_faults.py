@@ -1,4 +1,4 @@
-"""A simulation that fails is a fault, however it fails, in habitats in JAX and on the host."""
+"""Lives end for the gravest reason that a habitat, or the law, gives; however a simulation fails."""
 
 from typing import Any
 
@@ -9,49 +9,61 @@ from jax import Array
 
 from primordia.habitats import Outcome
 from primordia.habitats.on_host import OnHost
+from primordia.random.keys import Purpose
+from tests.law.turning import drawn
 from tests.toys import Meadow
 from tests.worlds import MEADOW, Lived, config
 
 AGE = 7
-HUNGRY = {"store": 100.0, "effort_cost": 1.0}
+WAYS = ["fault"] * 4 + ["fatal", "time-limit"]
 
 
-class Failing(Meadow):
-    """A meadow whose bodies fail at an age, each in one of four ways."""
+class Ending(Meadow):
+    """A meadow in which the time of all bodies is up at an age: four ways to fail, to die, or no more."""
 
     def reset(self, words: Array) -> Array:
-        way = (words[:, 0] % np.uint32(4)).astype(jnp.float32)
+        way = (words[:, 0] % np.uint32(len(WAYS))).astype(jnp.float32)
         return jnp.stack([jnp.zeros_like(way), way], axis=1)
 
     def step(self, bodies: Array, action: Array) -> tuple[Array, Outcome]:
-        _, outcome = super().step(bodies, action)
         clock, way = bodies[:, 0] + 1, bodies[:, 1]
-        failed = clock >= AGE
-        outcome = outcome._replace(
-            fault=failed & (way == 0),
-            food=jnp.where(failed & (way == 1), -jnp.inf, 0.0),
-            effort=jnp.where(failed & (way == 2), jnp.nan, 0.0),
+        ended = clock >= AGE
+        outcome = Outcome(
+            fatal=ended & (way != 5),
+            fault=ended & (way == 0),
+            food=jnp.where(ended & (way == 1), -jnp.inf, 0.0),
+            effort=jnp.where(ended & (way == 2), jnp.nan, 0.0),
+            expired=ended,
         )
-        clock = jnp.where(failed & (way == 3), jnp.inf, clock)
+        clock = jnp.where(ended & (way == 3), jnp.inf, clock)
         return jnp.stack([clock, way], axis=1), outcome
 
 
-class FailingOnHost(OnHost):
+class EndingOnHost(OnHost):
     """The same habitat on the host."""
 
     def __init__(self, **options: Any) -> None:
-        super().__init__(Failing(**options))
+        super().__init__(Ending(**options))
 
 
-@pytest.mark.parametrize("kind", [Failing, FailingOnHost])
-def test_all_die_of_the_fault_in_the_tick_in_which_it_happens(kind: type) -> None:
-    """The fault is the cause of death even if the body dies in that tick for another reason."""
-    habitat = {"name": f"{__name__}:{kind.__name__}", "lifespan": AGE}
-    still = {"replication": 0.0, "genesis": "fill", "metabolism": HUNGRY, "brain": {"hidden": 1}}
-    lived = Lived(config(MEADOW, habitat=habitat, **still), 3 * AGE)
-    deaths = lived.table("deaths")
-    assert set(deaths["cause"]) == {"fault"}
-    np.testing.assert_array_equal(np.unique(deaths["tick"]), [AGE, 2 * AGE, 3 * AGE])
-    assert len(deaths["tick"]) == 3 * 16
+@pytest.mark.parametrize("kind", ["Ending", pytest.param("EndingOnHost", marks=pytest.mark.slow)])
+def test_the_gravest_reason_to_die_is_the_cause(kind: str) -> None:
+    """The last organisms have a store that is empty in the tick of the limit; hunger comes first."""
+    still = {
+        "replication": 0.0,
+        "genesis": "fill",
+        "metabolism": {"store": 100.0, "effort_cost": 1},
+    }
+    habitat = {"name": f"{__name__}:{kind}"}
+    lived = Lived(config(MEADOW, habitat=habitat, **still, cells=64, brain={"hidden": 1}), AGE)
+    lived.change({"metabolism.store": AGE})
+    lived.advance_to(3 * AGE)
+    deaths, seed = lived.table("deaths"), lived.config.world_seeds[0]
+    assert deaths["tick"].tolist() == np.repeat([AGE, 2 * AGE, 3 * AGE], 64).tolist()
+    for generation, last in enumerate(["time-limit", "time-limit", "starved"]):
+        ways = drawn(seed, Purpose.BODY, generation * AGE, np.arange(64)).hi % len(WAYS)
+        assert len(set(ways.tolist())) == len(WAYS)
+        causes = deaths["cause"][deaths["tick"] == (generation + 1) * AGE]
+        assert causes.tolist() == [last if WAYS[way] == "time-limit" else WAYS[way] for way in ways]
     assert not deaths["food"].any(), "food that is not finite was not eaten"
     assert not lived.table("metrics")["food"].any()

@@ -9,13 +9,15 @@ import pytest
 from jax import Array
 
 from primordia.brains.layout import Layout
+from primordia.compiled import shared
 from primordia.law.genesis import begin
-from primordia.law.heredity import Birth, Heredity
+from primordia.law.heredity import Birth, Heredity, Newborn
 from primordia.law.recombination import Recombination
 from primordia.mutations.contract import PURPOSES, Change, Draws, Family
 from primordia.mutations.gaussian import Gaussian
 from primordia.random.keys import Purpose, streams
 from primordia.random.wide import wide
+from tests.mutations.families import inherited
 from tests.worlds import MEADOW, law_of
 
 LAYOUT = Layout((("input", (3, 2)), ("output", (2, 3))))
@@ -50,20 +52,23 @@ def births(heredity: Heredity, founder: np.ndarray) -> Birth:
     return Birth(
         seed=wide(SEEDS),
         number=wide(NUMBERS),
-        draws=Draws(drawn, jnp.arange(K)),
-        founder=jnp.asarray(founder),
+        draws=Draws(drawn, np.arange(K)),
+        founder=founder,
         rates={name: jnp.full(K, rate, jnp.float32) for name, rate in rates.items()},
     )
 
 
 def made(heredity: Heredity, founder: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the genomes of newborn, and which of them are mutants."""
-    none = jnp.zeros((K, 0), jnp.int32)
-    birth = births(heredity, founder)
-    newborn = heredity.make_newborn(birth, jnp.asarray(PARENTS), none, None)
-    rebuilt = heredity.rebuild_genomes(birth, jnp.asarray(PARENTS), none)
+    newborn, rebuilt = shared(_made, heredity)(births(heredity, founder))
     np.testing.assert_array_equal(newborn.genome, rebuilt)
     return np.asarray(newborn.genome), np.asarray(newborn.mutated)
+
+
+def _made(heredity: Heredity, birth: Birth) -> tuple[Newborn, Array]:
+    parents, none = jnp.asarray(PARENTS), jnp.zeros((K, 0), jnp.int32)
+    newborn = heredity.make_newborn(birth, parents, none, None)
+    return newborn, heredity.rebuild_genomes(birth, parents, none)
 
 
 @pytest.mark.parametrize("worlds", [1, 2])
@@ -75,8 +80,8 @@ def test_founders_take_the_ancestors_in_turn_and_children_their_parents_weights(
     heredity = heredity_of(ancestors=ANCESTORS, worlds=worlds)
     genome, mutated = made(heredity, founder)
     birth = births(heredity, founder)
-    family = Family(jnp.asarray(PARENTS), jnp.zeros((K, 0)), birth.rates, birth.draws)
-    children, mutants = map(np.asarray, heredity.mutation.inherit(LAYOUT, family))
+    family = Family(PARENTS, np.zeros((K, 0), np.int32), birth.rates, birth.draws)
+    children, mutants = inherited(heredity.mutation, LAYOUT, family)
     assert 0 < mutants.sum() < K
     for row in range(K):
         turn = (SEEDS[row] + NUMBERS[row]) % 2**64 % 5
@@ -90,9 +95,9 @@ def test_founders_draw_their_own_noise_and_children_theirs(worlds: int) -> None:
     heredity = heredity_of(mutation=Gaussian(probability=1.0, founder_scale=0.5), worlds=worlds)
     genome, _ = made(heredity, SOME)
     birth = births(heredity, SOME)
-    family = Family(jnp.asarray(PARENTS), jnp.zeros((K, 0)), birth.rates, birth.draws)
-    founders = np.asarray(heredity.mutation.founders(LAYOUT, birth.draws))
-    children = np.asarray(heredity.mutation.inherit(LAYOUT, family)[0])
+    family = Family(PARENTS, np.zeros((K, 0), np.int32), birth.rates, birth.draws)
+    founders = np.asarray(shared(Gaussian.founders, heredity.mutation, LAYOUT)(birth.draws))
+    children = inherited(heredity.mutation, LAYOUT, family)[0]
     np.testing.assert_array_equal(genome, np.where(SOME[:, None], founders, children))
 
 
@@ -109,8 +114,9 @@ def test_without_inheritance_all_newborn_have_genomes_of_ancestors() -> None:
 @pytest.mark.parametrize("founder", [SOME, SOME | True, SOME & False])
 def test_founders_have_the_mutations_notes_for_founders(founder: np.ndarray) -> None:
     heredity = heredity_of(mutation=Noted())
-    notes = jnp.arange(2 * K, dtype=jnp.int32).reshape(K, 2)
-    newborn = heredity.make_newborn(births(heredity, founder), jnp.asarray(PARENTS), notes, None)
+    notes = np.arange(2 * K, dtype=np.int32).reshape(K, 2)
+    make = shared(Heredity.make_newborn, heredity)
+    newborn = make(births(heredity, founder), PARENTS, notes, None)
     expected = [[3, -1] if founder[row] else [2 * row + 10, 2 * row + 11] for row in range(K)]
     assert newborn.notes.tolist() == expected
 
@@ -126,12 +132,12 @@ def test_only_a_child_with_a_mate_has_weights_of_the_mate() -> None:
     mates = PARENTS + 100
     both = heredity_of(recombination=Recombination())
     birth = births(both, SOME & False)
-    found = np.asarray(both.recombined(birth, PARENTS, mates, jnp.asarray(SOME)))
+    found = np.asarray(shared(Heredity.recombined, both)(birth, PARENTS, mates, SOME))
     from_mate = found == mates
     assert ((found == PARENTS) | from_mate).all()
     assert not from_mate[~SOME].any()
     assert 0 < from_mate[SOME].sum() < from_mate[SOME].size
-    alone = np.asarray(heredity_of().recombined(birth, PARENTS, mates, jnp.asarray(SOME)))
+    alone = np.asarray(heredity_of().recombined(birth, PARENTS, mates, SOME))
     np.testing.assert_array_equal(alone, PARENTS)
 
 

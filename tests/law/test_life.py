@@ -1,10 +1,11 @@
 """One tick with invented outcomes: causes of death, food, energy, and which organisms replicate."""
 
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 from itertools import product
 from typing import Any
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -20,8 +21,9 @@ from primordia.law.motor import Motor
 from primordia.law.world import Cause, Organisms, World
 from primordia.mutations.noise import noise_index
 from primordia.random.gaussian import quantiles
-from primordia.random.keys import Purpose, bits, stream
-from primordia.random.wide import to_host, wide
+from primordia.random.keys import Purpose, stream
+from primordia.random.wide import Wide, to_host, wide
+from tests.law.turning import drawn as of_cells
 from tests.worlds import MEADOW, law_of
 
 RATES = Rates(*(np.float32(value) for value in (10, 1, 1, 1, 1e6)))
@@ -34,6 +36,10 @@ def meadow_law(hungry: bool = True) -> Law:
     return law_of(MEADOW, cells=6, seeds=2, hazard=0.5, replication=0.5, **metabolism)
 
 
+JUDGE = jax.jit(life.judge, static_argnums=0)
+JUDGE_WORLD = jax.jit(tick.judge, static_argnums=0)
+KEYS = jax.jit(tick.keys_of)
+NOISE = jax.jit(noise_index, static_argnums=2)
 REASONS = ("expired", "hungry", "fatal", "thought", "body", "food", "effort", "reported")
 CASES = np.array(list(product([False, True], repeat=len(REASONS))))
 
@@ -50,7 +56,7 @@ def judged(hungry: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         fault=of["reported"],
     )
     bodies = np.where(of["body"], np.nan, 0.0).astype(np.float32)[:, None]
-    vitals, cause = life.judge(
+    vitals, cause = JUDGE(
         meadow_law(hungry), Vitals(energy, 0 * energy), of["thought"], bodies, outcome, RATES
     )
     return np.asarray(vitals.energy), np.asarray(vitals.eaten), np.asarray(cause)
@@ -81,7 +87,7 @@ def test_without_food_and_effort_only_the_drain_changes_energy() -> None:
     vitals, none = Vitals(np.full(3, 5 * ONE, np.int32), np.array([0, 7, 9], np.int32)), np.zeros(3)
     outcome = Outcome(np.array([False, True, False]))
     for hungry, left in ((True, 4 * ONE), (False, 5 * ONE)):
-        after, cause = life.judge(meadow_law(hungry), vitals, none > 0, none, outcome, RATES)
+        after, cause = JUDGE(meadow_law(hungry), vitals, none > 0, none, outcome, RATES)
         assert cause.tolist() == [-1, Cause.FATAL, -1]
         assert after.energy.tolist() == [left] * 3
         assert after.eaten.tolist() == [0, 7, 9]
@@ -93,9 +99,7 @@ def test_food_is_counted_with_a_metabolism_and_without() -> None:
     outcome = Outcome(np.zeros(3, bool), np.array([0.5, -0.25, 3.0], np.float32))
     rates = RATES._replace(gain=np.float32(2))
     for hungry, energies in ((True, [5.0, 3.5, 10.0]), (False, [5.0, 5.0, 5.0])):
-        after, _ = life.judge(
-            meadow_law(hungry), vitals, np.zeros(3, bool), np.zeros(3), outcome, rates
-        )
+        after, _ = JUDGE(meadow_law(hungry), vitals, np.zeros(3, bool), np.zeros(3), outcome, rates)
         assert after.eaten.tolist() == [ONE // 2, 7 - ONE // 4, 2**30 - 64]
         assert after.energy.tolist() == [energy * ONE for energy in energies]
 
@@ -110,9 +114,13 @@ def thought(motor: Motor, outputs: np.ndarray, action: Action = NUMBERS) -> Thou
         return memory + senses, jnp.asarray(outputs)
 
     law = replace(meadow_law(), brain=brain, motor=motor, action=action)
-    key = stream(wide(np.arange(len(outputs))), Purpose.MOTOR, wide(np.full(len(outputs), 4)))
     memory, senses = np.ones((2, len(outputs), 3), np.float32)
-    return life.think(law, {}, memory, senses, key, np.arange(len(outputs)))
+    think = jax.jit(lambda *given: life.think(law, {}, *given))
+    return think(memory, senses, key_of(len(outputs)), np.arange(len(outputs)))
+
+
+def key_of(count: int) -> Wide:
+    return stream(wide(np.arange(count)), Purpose.MOTOR, wide(np.full(count, 4)))
 
 
 def test_an_output_that_is_not_finite_is_a_fault_wherever_it_is() -> None:
@@ -127,8 +135,7 @@ def test_an_output_that_is_not_finite_is_a_fault_wherever_it_is() -> None:
 
 def test_the_gaussian_motor_adds_noise_of_its_own_scale_to_each_output() -> None:
     outputs = np.arange(15, dtype=np.float32).reshape(5, 3)
-    key = stream(wide(np.arange(5)), Purpose.MOTOR, wide(np.full(5, 4)))
-    noise = quantiles()[np.asarray(noise_index(key, np.arange(5), 3))]
+    noise = quantiles()[np.asarray(NOISE(key_of(5), np.arange(5), 3))]
     for sd in (0.0, 0.25, 2.0):
         action = thought(Motor(kind="gaussian", sd=sd), outputs).action
         np.testing.assert_allclose(action, outputs + sd * noise, rtol=1e-6)
@@ -137,8 +144,7 @@ def test_the_gaussian_motor_adds_noise_of_its_own_scale_to_each_output() -> None
 def test_the_gaussian_motor_leaves_choices_alone() -> None:
     """A choice is the largest output, whatever the noise; only the numbers beside it have noise."""
     outputs = np.random.default_rng(5).normal(size=(40, 5)).astype(np.float32)
-    key = stream(wide(np.arange(40)), Purpose.MOTOR, wide(np.full(40, 4)))
-    noise = quantiles()[np.asarray(noise_index(key, np.arange(40), 5))]
+    noise = quantiles()[np.asarray(NOISE(key_of(40), np.arange(40), 5))]
     action = Compound((Discrete(2), Continuous(1), Discrete(2)))
     found = np.asarray(thought(Motor(kind="gaussian", sd=100.0), outputs, action).action)
     np.testing.assert_array_equal(found[:, 0], outputs[:, :2].argmax(axis=1))
@@ -149,20 +155,20 @@ def test_the_gaussian_motor_leaves_choices_alone() -> None:
 def a_world(alive: np.ndarray, hazard: list[float], replication: list[float]) -> World:
     world = begin(meadow_law(), np.array([5, 2**40], np.uint64), tick=9)
     climate = world.worlds.climate | {
-        "hazard": jnp.array(hazard, jnp.float32),
-        "replication": jnp.array(replication, jnp.float32),
+        "hazard": np.float32(hazard),
+        "replication": np.float32(replication),
     }
-    energy = jnp.full(12, 100 * ONE, jnp.int32)
-    organisms = world.organisms._replace(alive=jnp.asarray(alive), energy=energy)
+    energy = np.full(12, 100 * ONE, np.int32)
+    organisms = world.organisms._replace(alive=alive, energy=energy)
     return World(organisms, world.worlds._replace(climate=climate))
 
 
 def fates(world: World, active: np.ndarray, **outcome: Any) -> tuple[World, tick.Fates]:
     """Judge the tick 12 of a world of tick 9."""
-    keys = tick.keys_of(world.worlds, jnp.int32(3))
+    keys = KEYS(world.worlds, np.int32(3))
     quiet = Thought(world.organisms.memory, np.zeros(12, np.int32), np.zeros(12, bool))
     of = Outcome(**{"fatal": np.zeros(12, bool), **outcome})
-    return tick.judge(meadow_law(), world, quiet, np.zeros(12), of, keys, active)
+    return JUDGE_WORLD(meadow_law(), world, quiet, np.zeros(12), of, keys, active)
 
 
 def test_the_motor_of_a_cell_draws_for_its_world_tick_and_place_in_the_world() -> None:
@@ -173,17 +179,17 @@ def test_the_motor_of_a_cell_draws_for_its_world_tick_and_place_in_the_world() -
     law = replace(meadow_law(), brain=brain, motor=motor, action=Continuous(2))
     world = a_world(np.ones(12, bool), [0, 0], [0, 0])
     senses = np.arange(24, dtype=np.float32).reshape(12, 2)
-    found = tick.think(law, world, senses, tick.keys_of(world.worlds, jnp.int32(3)))
+    think = jax.jit(partial(tick.think, law))
+    found = think(world, senses, KEYS(world.worlds, np.int32(3)))
     key = stream(wide(np.repeat([5, 2**40], 6)), Purpose.MOTOR, wide(np.full(12, 12)))
-    noise = quantiles()[np.asarray(noise_index(key, np.tile(np.arange(6), 2), 2))]
+    noise = quantiles()[np.asarray(NOISE(key, np.tile(np.arange(6), 2), 2))]
     np.testing.assert_allclose(found.action, 2 * senses + 0.5 * noise, rtol=1e-6)
     assert (np.asarray(found.memory) == -1).all()
 
 
 def drawn(purpose: Purpose, chances: list[float]) -> np.ndarray:
     """Return in which cells an event of tick 12 happens, from the words of the cells."""
-    key = stream(wide([5, 2**40]), purpose, wide([12, 12]))
-    words = np.asarray(bits(key.map(lambda word: word[:, None]), np.arange(6)).hi).astype(float)
+    words = np.asarray(of_cells([[5], [2**40]], purpose, 12, np.arange(6)).hi, float)
     return (words < np.array(chances)[:, None] * 2.0**32).ravel()
 
 
@@ -242,7 +248,7 @@ def test_food_of_a_world_is_that_of_its_active_organisms_rounded_one_by_one() ->
 
 def test_only_active_organisms_change_between_ticks() -> None:
     def filled(number: int, which: Organisms) -> Organisms:
-        arrays = {name: jnp.full_like(getattr(which, name), number)
+        arrays = {name: np.full_like(getattr(which, name), number)
                   for name in ("memory", "energy", "eaten")}  # fmt: skip
         return which._replace(**arrays)
 

@@ -6,10 +6,9 @@ from functools import cache
 from itertools import product
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from primordia.law.placement import Placement
@@ -20,16 +19,18 @@ from tests.chronicle import reach
 TOPOLOGIES = ["ring", "torus4", "torus8", "well-mixed"]
 RULES = ["blind", "empty-only", "replacing"]
 ALL = list(product(TOPOLOGIES, RULES))
-W, N = 2, 12  # a torus of 3 x 4
+W, N = 12_000, 12  # a torus of 3 x 4
+ROUNDS = N + 1
 
 
 @cache
 def compiled(topology: str, rule: str) -> Callable:
-    """Return the function from words (rounds, 2, W, N), wants and occupied (W, N) to parents (W, N)."""
+    """Return the function from words (rounds, 2, W, N), wants and occupied (W, N) to parents and room."""
     placement = Placement(topology=topology, rule=rule)
 
-    def place(words: jax.Array, wants: jax.Array, occupied: jax.Array) -> jax.Array:
-        return placement.parents(lambda number: Wide(*words[number]), wants, occupied)
+    def place(words: jax.Array, wants: jax.Array, occupied: jax.Array) -> tuple:
+        parents = placement.parents(lambda number: Wide(*words[number]), wants, occupied)
+        return parents, placement.room(occupied)
 
     return jax.jit(place)
 
@@ -61,135 +62,69 @@ def one_after_another(
     return parent
 
 
-def a_tick(seed: int, density: float, eager: float, coarse: bool) -> tuple[np.ndarray, ...]:
-    """Return words, wants and occupied; with `coarse`, priorities are often equal."""
-    rng = np.random.default_rng(seed)
-    words = rng.integers(0, 2**32, (N + 1, 2, W, N), dtype=np.uint32)
-    if coarse:
-        words[:, 1] &= 1
-    occupied = rng.random((W, N)) < density
-    return words, occupied & (rng.random((W, N)) < eager), occupied
-
-
-ticks = st.builds(
-    a_tick, st.integers(0, 2**32), st.floats(0, 1), st.sampled_from([0.3, 1.0]), st.booleans()
-)
+@cache
+def words(seed: int) -> np.ndarray:
+    return np.random.default_rng(seed).integers(0, 2**32, (ROUNDS, 2, W, N), dtype=np.uint32)
 
 
 @pytest.mark.parametrize(("topology", "rule"), ALL)
-@settings(max_examples=60)
-@given(ticks)
-def test_placing_all_at_once_equals_placing_one_by_one(
-    topology: str, rule: str, tick: tuple[np.ndarray, ...]
-) -> None:
-    words, wants, occupied = tick
-    parents = compiled(topology, rule)(*tick)
-    assert parents.dtype == jnp.int32
-    for world in range(W):
-        alone = one_after_another(topology, rule, words[:, :, world], wants[world], occupied[world])
+def test_placing_all_at_once_equals_placing_one_by_one(topology: str, rule: str) -> None:
+    """Worlds are empty to full. In half of them priorities are often equal; in one nobody wants a child.
+
+    There is room beside an organism if a cell in its reach would take a child.
+    """
+    rng, drawn = np.random.default_rng(2), words(1).copy()
+    drawn[:, 1, ::2] &= 1
+    occupied = rng.random((W, N)) < rng.random((W, 1))
+    wants = occupied & (rng.random((W, N)) < rng.choice([0.3, 1.0], (W, 1)))
+    wants[5] = False
+    parents, room = map(np.asarray, compiled(topology, rule)(drawn, wants, occupied))
+    assert parents.dtype == np.int32
+    for world in range(200):
+        alone = one_after_another(topology, rule, drawn[:, :, world], wants[world], occupied[world])
         assert parents[world].tolist() == alone.tolist()
+        for cell in np.flatnonzero(occupied[world]):
+            free = not occupied[world, reach(topology, int(cell), N)].all()
+            assert room[world, cell] == (rule == "replacing" or free)
 
 
-@pytest.mark.parametrize(("topology", "rule"), ALL)
-@settings(max_examples=60)
-@given(ticks)
-def test_births_obey_the_rules_of_placement(
-    topology: str, rule: str, tick: tuple[np.ndarray, ...]
-) -> None:
-    words, wants, occupied = tick
-    parents = np.asarray(compiled(topology, rule)(*tick))
-    for parent, want, full in zip(parents, wants, occupied, strict=True):
-        born = np.flatnonzero(parent >= 0)
-        satisfied = parent[born].tolist()
-        assert len(set(satisfied)) == len(satisfied), "two children in one tick"
-        assert want[satisfied].all()
-        for child, cell in zip(born, satisfied, strict=True):
-            assert child in reach(topology, cell, N)
-            assert child != cell
-        if rule != "replacing":
-            assert not full[born].any()
-        if rule == "empty-only":
-            after = full | (parent >= 0)
-            for cell in set(np.flatnonzero(want)) - set(satisfied):
-                assert after[reach(topology, cell, N)].all(), "it had an empty cell in reach"
-    if rule != "empty-only":
-        choice = words[0, 0].astype(object)
-        for world, cell in zip(*np.nonzero(wants), strict=True):
-            options = reach(topology, int(cell), N)
-            picked = options[choice[world, cell] * len(options) >> 32]
-            if rule == "replacing" or not occupied[world, picked]:
-                assert parents[world, picked] >= 0, "no birth in a cell that a parent chose"
-
-
-@pytest.mark.parametrize(("topology", "rule"), ALL)
-@settings(max_examples=25)
-@given(ticks)
-def test_room_is_a_cell_in_reach_that_would_take_a_child(
-    topology: str, rule: str, tick: tuple[np.ndarray, ...]
-) -> None:
-    _, _, occupied = tick
-    room = Placement(topology=topology, rule=rule).room(jnp.asarray(occupied))
-    assert room.shape == (W, N)
-    for world, cell in zip(*np.nonzero(occupied), strict=True):
-        free = [option for option in reach(topology, int(cell), N) if not occupied[world, option]]
-        assert bool(room[world, cell]) == (rule == "replacing" or bool(free))
-
-
-@pytest.mark.parametrize(("topology", "rule"), ALL)
-def test_without_parents_there_are_no_births(topology: str, rule: str) -> None:
-    words, _, occupied = a_tick(1, 0.5, 1.0, coarse=False)
-    assert (compiled(topology, rule)(words, np.zeros((W, N), bool), occupied) == -1).all()
-
-
-def many(rule: str, topology: str, occupied: list[bool]) -> tuple[np.ndarray, np.ndarray]:
-    """Return parents (worlds, cells) of many equal worlds in which all organisms want a child.
+def many(rule: str, topology: str, empty: list[int]) -> tuple[np.ndarray, np.ndarray]:
+    """Return parents (W, N) of many equal worlds in which all organisms want a child.
 
     Also return the cell that each organism would take if it could choose freely.
     """
-    worlds, cells = 30_000, len(occupied)
-    words = np.random.default_rng(7).integers(0, 2**32, (6, 2, worlds, cells), dtype=np.uint32)
-    full = np.tile(np.array(occupied), (worlds, 1))
-    parents = np.asarray(compiled(topology, rule)(words, full, full))
-    options = np.array([reach(topology, cell, cells) for cell in range(cells)])
-    nth = (words[0, 0].astype(np.uint64) * np.uint64(options.shape[1])) >> np.uint64(32)
-    return parents, options[np.arange(cells), nth.astype(int)]
+    full = np.tile(~np.isin(np.arange(N), empty), (W, 1))
+    parents = np.asarray(compiled(topology, rule)(words(7), full, full)[0])
+    options = np.array([reach(topology, cell, N) for cell in range(N)])
+    nth = (words(7)[0, 0].astype(np.uint64) * np.uint64(options.shape[1])) >> np.uint64(32)
+    return parents, options[np.arange(N), nth.astype(int)]
 
 
 @pytest.mark.parametrize("rule", RULES)
 def test_two_contenders_win_equally_often(rule: str) -> None:
-    parents, picked = many(rule, "ring", [True, False, True, True])
+    parents, picked = many(rule, "ring", [1])
     contested = (picked[:, [0, 2]] == 1).all(axis=1) | (rule == "empty-only")
-    winners = np.bincount(parents[contested, 1], minlength=4)
-    assert winners[[1, 3]].sum() == 0
+    winners = np.bincount(parents[contested, 1], minlength=N)
+    assert winners.sum() == winners[[0, 2]].sum() > 2000
     assert even(winners[[0, 2]])
 
 
-@pytest.mark.parametrize("rule", RULES)
-def test_three_contenders_win_equally_often(rule: str) -> None:
-    parents, picked = many(rule, "well-mixed", [True, True, True, False])
-    contested = (picked[:, :3] == 3).all(axis=1) | (rule == "empty-only")
-    winners = np.bincount(parents[contested, 3], minlength=4)
+def test_many_contenders_win_equally_often() -> None:
+    parents, _ = many("empty-only", "well-mixed", [3])
+    winners = np.bincount(parents[:, 3], minlength=N)
     assert winners[3] == 0
-    assert even(winners[:3])
-
-
-def test_a_loser_tries_its_other_empty_neighbour() -> None:
-    """Cells 1 and 3 are empty, and 0 and 2 reach both, so both organisms get a child."""
-    parents, _ = many("empty-only", "ring", [True, False, True, False])
-    assert (np.sort(parents[:, [1, 3]], axis=1) == [0, 2]).all()
-    assert even(np.bincount(parents[:, 1], minlength=3)[[0, 2]])
+    assert even(np.delete(winners, 3))
 
 
 @pytest.mark.parametrize(("topology", "rule"), ALL)
 def test_every_direction_is_equally_likely(topology: str, rule: str) -> None:
     """Each of many worlds has one organism, with one of its neighbours occupied."""
-    worlds, home, other = 24_000, 5, 4
-    words = np.random.default_rng(3).integers(0, 2**32, (2, 2, worlds, N), dtype=np.uint32)
-    wants = np.zeros((worlds, N), bool)
+    home, other = 5, 4
+    wants = np.zeros((W, N), bool)
     wants[:, home] = True
     occupied = wants.copy()
     occupied[:, other] = True
-    parents = np.asarray(compiled(topology, rule)(words, wants, occupied))
+    parents = np.asarray(compiled(topology, rule)(words(3), wants, occupied)[0])
     births = np.bincount(np.nonzero(parents >= 0)[1], minlength=N)
     options = reach(topology, home, N)
     assert len(set(options)) == len(options)
@@ -198,8 +133,8 @@ def test_every_direction_is_equally_likely(topology: str, rule: str) -> None:
     if len(open_) > 1:
         assert even(births[open_])
     share = 1 - 1 / len(options) if rule == "blind" else 1
-    spread = math.sqrt(worlds * share * (1 - share))
-    assert abs(births.sum() - worlds * share) <= 5 * spread
+    spread = math.sqrt(W * share * (1 - share))
+    assert abs(births.sum() - W * share) <= 5 * spread
 
 
 @pytest.mark.parametrize(
@@ -244,5 +179,5 @@ def test_impossible_tori_are_refused(cells: int, rows: int | None) -> None:
 @pytest.mark.parametrize(("rows", "around"), [(6, [1, 2, 10]), (2, [1, 5, 6]), (3, [1, 3, 4, 8])])
 def test_rows_decide_which_cells_are_neighbours(rows: int, around: list[int]) -> None:
     only_cell_0_is_empty = np.arange(12)[None] > 0
-    room = Placement(topology="torus4", rows=rows).room(jnp.asarray(only_cell_0_is_empty))
+    room = jax.jit(Placement(topology="torus4", rows=rows).room)(only_cell_0_is_empty)
     assert np.flatnonzero(room[0]).tolist() == around

@@ -2,11 +2,12 @@
 
 from typing import Any
 
-import jax.numpy as jnp
+import jax
 import numpy as np
 import pytest
 
 from primordia.brains.layout import Layout
+from primordia.compiled import shared
 from primordia.law.placement import Placement
 from primordia.law.recombination import Recombination
 from primordia.mutations.contract import Draws
@@ -22,10 +23,16 @@ K = 3_000
 def children(unit: Any) -> np.ndarray:
     """Return which weights of K children come from the mate, bool (K, P)."""
     drawn = streams(wide(np.arange(K)), wide(np.zeros(K)), Purpose.CROSS)
-    draws = Draws(drawn, jnp.zeros(K, jnp.int32))
-    zeros = jnp.zeros((K, LAYOUT.length))
-    made = Recombination(unit=unit).recombined(LAYOUT, draws, zeros, zeros + 1)
-    return np.asarray(made) == 1
+    draws = Draws(drawn, np.zeros(K, np.int32))
+    zeros = np.zeros((K, LAYOUT.length), np.float32)
+    recombined = shared(Recombination.recombined, Recombination(unit=unit), LAYOUT)
+    return np.asarray(recombined(draws, zeros, zeros + 1)) == 1
+
+
+def mates_of(word: Wide, candidates: np.ndarray, probability: float = 1.0) -> np.ndarray:
+    return np.asarray(
+        shared(Recombination.mates, Recombination(probability=probability))(word, candidates)
+    )
 
 
 @pytest.mark.parametrize(("unit", "count"), [("block", 4), ("row", 6)])
@@ -53,13 +60,13 @@ def test_every_candidate_is_as_likely_to_be_the_mate() -> None:
     candidates[:, [1, 4, 5]] = True
     candidates[: K // 2, 5] = False
     candidates[0] = False
-    word = Wide(*(jnp.asarray(np.random.default_rng(2).integers(0, 2**32, (2, K), np.uint32))))
-    mates = np.asarray(Recombination().mates(word, jnp.asarray(candidates)))
+    word = Wide(*np.random.default_rng(2).integers(0, 2**32, (2, K), np.uint32))
+    mates = mates_of(word, candidates)
     assert mates[0] == -1
     assert set(mates[1 : K // 2]) == {1, 4}
     for cell in (1, 4, 5):
         assert binomial(int((mates[K // 2 :] == cell).sum()), K // 2, 1 / 3)
-    few = np.asarray(Recombination(probability=0.25).mates(word, jnp.asarray(candidates)))
+    few = mates_of(word, candidates, 0.25)
     assert binomial(int((few[1:] >= 0).sum()), K - 1, 0.25)
     with_all = few[K // 2 :]
     for cell in (1, 4, 5):
@@ -74,9 +81,8 @@ def test_a_mate_is_chosen_by_the_high_word_and_refused_by_the_low_one() -> None:
     low[:4] = 2**31 - 1, 2**31, 0, 2**32 - 1
     candidates[:4] = True
     for probability in (0.0, 0.5, 1.0):
-        word = Wide(jnp.asarray(high), jnp.asarray(low))
-        found = Recombination(probability=probability).mates(word, jnp.asarray(candidates))
-        for row, mate in enumerate(np.asarray(found).tolist()):
+        found = mates_of(Wide(high, low), candidates, probability)
+        for row, mate in enumerate(found.tolist()):
             cells = np.flatnonzero(candidates[row]).tolist()
             wanted = cells and int(low[row]) < probability * 2**32
             assert mate == (cells[int(high[row]) * len(cells) >> 32] if wanted else -1)
@@ -101,7 +107,8 @@ def test_rows_of_blocks_of_equal_height_share_units_and_other_rows_have_their_ow
     ],
 )
 def test_neighbours_are_those_of_the_topology(topology: Any, cells: int, near: set[int]) -> None:
-    found = np.asarray(Placement(topology=topology).near(jnp.array([0, cells - 1]), cells))
+    near_of = jax.jit(Placement(topology=topology).near, static_argnums=1)
+    found = np.asarray(near_of(np.int32([0, cells - 1]), cells))
     assert set(np.flatnonzero(found[0]).tolist()) == near
     assert found[1].sum() == len(near)
     assert not found[1, cells - 1]

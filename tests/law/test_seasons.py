@@ -1,9 +1,10 @@
 """Seasons: settings change in the right tick, in the right world, and by the right amount."""
 
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-import jax.numpy as jnp
+import jax
 import numpy as np
 import pytest
 from pydantic import TypeAdapter, ValidationError
@@ -15,6 +16,7 @@ from primordia.law.genesis import begin
 from primordia.law.law import Law
 from primordia.law.metabolism import break_even
 from primordia.law.seasons import Ratchet, Season, apply_seasons
+from primordia.law.world import World, Worlds
 from tests.chronicle import History
 from tests.worlds import MEADOW, MILL, Lived, config
 
@@ -200,17 +202,22 @@ def law_of(seasons: list[dict[str, Any]]) -> tuple[Law, Habitat | HostHabitat]:
     return made.build_law(habitat), habitat
 
 
+def applied(law: Law, world: World, running: list[bool]) -> tuple[Worlds, Any]:
+    apply = jax.jit(partial(apply_seasons, law.seasons, law.governed))
+    return apply(world, np.array(running))
+
+
 def test_two_equal_ratchets_both_turn() -> None:
     """Each looks on its own; neither stops the other."""
     twin = ratchet("metabolism.gain", "saturation", 0.5, 0.5, 10)
     law, _ = law_of([twin, twin])
     world = begin(law, np.array([1, 2]))
-    full = world.organisms.alive.at[:16].set(True)
-    looks = world.worlds.looks._replace(wait=jnp.zeros((2, 2), jnp.int32))
+    full = np.arange(32) < 16
+    looks = world.worlds.looks._replace(wait=np.zeros((2, 2), np.int32))
     world = world._replace(
         organisms=world.organisms._replace(alive=full), worlds=world.worlds._replace(looks=looks)
     )
-    worlds, changed = apply_seasons(law.seasons, law.governed, world, jnp.ones(2, bool))
+    worlds, changed = applied(law, world, [True, True])
     assert changed.tolist() == [True, False]
     assert worlds.climate["metabolism.gain"].tolist() == [0.25, 1.0]
     assert worlds.looks.wait.tolist() == [[10, 10], [10, 10]], "a look that is not over never ends"
@@ -221,12 +228,12 @@ def test_a_world_that_has_stopped_has_no_seasons() -> None:
         [ratchet("replication", "saturation", 0.0, 0.5, 10), schedule("hazard", 7, 0.5)]
     )
     world = begin(law, np.array([1, 2]), tick=7)
-    looks = world.worlds.looks._replace(wait=jnp.zeros((2, 1), jnp.int32))
-    alive = jnp.ones_like(world.organisms.alive)
+    looks = world.worlds.looks._replace(wait=np.zeros((2, 1), np.int32))
+    alive = np.ones(32, bool)
     world = world._replace(
         organisms=world.organisms._replace(alive=alive), worlds=world.worlds._replace(looks=looks)
     )
-    worlds, changed = apply_seasons(law.seasons, law.governed, world, jnp.array([True, False]))
+    worlds, changed = applied(law, world, [True, False])
     assert changed.tolist() == [True, False]
     assert worlds.climate["hazard"].tolist() == [0.5, 0.0]
     np.testing.assert_array_equal(worlds.climate["replication"], np.float32([0.025, 0.05]))

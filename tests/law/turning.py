@@ -70,7 +70,7 @@ def _whole(values: object) -> Wide:
     return Wide(np.uint32(whole >> np.uint64(32)), np.uint32(whole & np.uint64(2**32 - 1)))
 
 
-def numbered(genome: Genome, numbers: np.ndarray) -> Genome:
+def numbered(genome: Genome, numbers: np.ndarray) -> dict[str, np.ndarray]:
     """Return genomes in which each weight of an organism is the organism's number."""
     return {
         name: np.broadcast_to(np.float32(numbers).reshape(-1, *[1] * (block.ndim - 1)), block.shape)

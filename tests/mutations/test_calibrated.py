@@ -1,6 +1,7 @@
 """Calibrated mutation: as much change of behaviour as is allowed, in whole steps of length."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import jax.numpy as jnp
@@ -11,26 +12,20 @@ from jax import Array
 from primordia.brains.layout import Layout
 from primordia.mutations.blocks import FounderBlock
 from primordia.mutations.calibrated import Calibrated
-from primordia.mutations.contract import PURPOSES, Change, Draws, Family, Moments
+from primordia.mutations.contract import Change, Family, Moments
 from primordia.mutations.lengths import LENGTHS, LONGEST, SHORTEST
-from primordia.random.keys import Purpose, bits, streams
-from primordia.random.wide import wide
+from primordia.random.keys import Purpose, bits
 from primordia.testing import ContractError, check_mutation
+from tests.mutations.families import drawn, inherited, noted, rates
 
 LAYOUT = Layout((("input", (3, 7)), ("output", (2, 7))))
 K = 64
 
 
-def family(mutation: Calibrated, **rates: float) -> Family:
-    values = {**mutation.rates(LAYOUT), **rates}
-    draws = Draws(streams(wide(np.arange(K)), wide(np.zeros(K)), *PURPOSES), jnp.arange(K))
+def family(mutation: Calibrated, **own: float) -> Family:
     parents = np.random.default_rng(0).normal(size=(K, LAYOUT.length)).astype(np.float32)
-    return Family(
-        jnp.asarray(parents),
-        jnp.zeros((K, 1), jnp.int32),
-        {name: jnp.full(K, value, jnp.float32) for name, value in values.items()},
-        draws,
-    )
+    notes = np.zeros((K, 1), np.int32)
+    return Family(parents, notes, rates(mutation, LAYOUT, K, **own), drawn(K))
 
 
 def distance(parents: Array) -> Change:
@@ -42,8 +37,8 @@ def share_of_moments(parents: Array) -> Change:
     return lambda children: jnp.floor(64 * distance(parents)(children)) / 64
 
 
-def noted(mutation: Calibrated, of: Family, change: Change) -> np.ndarray:
-    return np.asarray(mutation.note(LAYOUT, of, change))[:, 0]
+def nothing(value: float, parents: Array) -> Change:
+    return lambda children: jnp.full(len(children), value)
 
 
 @pytest.mark.parametrize(
@@ -56,13 +51,12 @@ def test_a_length_is_the_largest_that_changes_no_more_than_allowed(
 ) -> None:
     mutation = Calibrated(probability=1.0, founder_scale=0.3)
     of = family(mutation, differs=differs)
-    change = kind(of.parents)
-    quarters = noted(mutation, of, change)
+    quarters = noted(mutation, LAYOUT, of, kind)
 
     def changed(notes: np.ndarray) -> np.ndarray:
-        children, mutants = mutation.inherit(LAYOUT, of._replace(notes=jnp.asarray(notes)[:, None]))
-        assert np.asarray(mutants).all()
-        return np.asarray(change(children))
+        children, mutants = inherited(mutation, LAYOUT, of._replace(notes=notes[:, None]))
+        assert mutants.all()
+        return np.asarray(kind(of.parents)(children))
 
     assert (changed(quarters) <= np.float32(differs)).all()
     longer = quarters < 0  # 0 is the end of the scale
@@ -73,20 +67,20 @@ def test_a_length_is_the_largest_that_changes_no_more_than_allowed(
 @pytest.mark.parametrize(("value", "quarters"), [(np.inf, SHORTEST), (np.nan, SHORTEST), (0.0, 0)])
 def test_where_nothing_or_everything_is_allowed_the_scale_ends(value: float, quarters: int) -> None:
     mutation = Calibrated(probability=1.0)
-    found = noted(mutation, family(mutation), lambda children: jnp.full(len(children), value))
+    found = noted(mutation, LAYOUT, family(mutation), partial(nothing, value))
     assert (found == quarters).all()
 
 
 def test_copies_have_the_parents_genome_and_no_length() -> None:
     mutation = Calibrated(probability=0.5, founder_scale=0.1)
     of = family(mutation)
-    quarters = noted(mutation, of, distance(of.parents))
-    children, mutants = mutation.inherit(LAYOUT, of._replace(notes=jnp.asarray(quarters)[:, None]))
-    copies = ~np.asarray(mutants)
+    quarters = noted(mutation, LAYOUT, of, distance)
+    children, mutants = inherited(mutation, LAYOUT, of._replace(notes=quarters[:, None]))
+    copies = ~mutants
     word = bits(of.draws.streams[Purpose.MUTATE], of.draws.cell).hi
     np.testing.assert_array_equal(copies, np.asarray(word) >= 2**31)
     assert 10 < copies.sum() < K - 10
-    np.testing.assert_array_equal(np.asarray(children)[copies], np.asarray(of.parents)[copies])
+    np.testing.assert_array_equal(children[copies], of.parents[copies])
     assert (quarters[copies] == 0).all()
     assert (quarters[~copies] < 0).all()
 
@@ -95,9 +89,9 @@ def test_noise_has_the_proportions_of_founders() -> None:
     """In each block it is the same noise, times the founders' scale there."""
     own = {"output": FounderBlock(founder_scale=0.03)}
     mutation = Calibrated(probability=1.0, founder_scale=0.3, blocks=own)
-    of = family(mutation)._replace(parents=jnp.zeros((K, LAYOUT.length)))
-    notes = jnp.full((K, 1), -8, jnp.int32)
-    noise = np.asarray(mutation.inherit(LAYOUT, of._replace(notes=notes))[0]) * 4
+    of = family(mutation)._replace(parents=np.zeros((K, LAYOUT.length), np.float32))
+    notes = np.full((K, 1), -8, np.int32)
+    noise = inherited(mutation, LAYOUT, of._replace(notes=notes))[0] * 4
     one = of.draws.streams.replaced(of.draws.streams[Purpose.NOISE], Purpose.FOUNDER)
     founders = mutation.founders(LAYOUT, of.draws._replace(streams=one))
     np.testing.assert_allclose(noise, founders, rtol=1e-6)
@@ -134,11 +128,11 @@ def test_seasons_change_two_rates_and_a_length_follows_the_present_rates() -> No
     odd = np.arange(K) % 2
     small, large = (family(mutation, probability=1.0, differs=each) for each in (0.01, 0.16))
     here = {
-        "probability": jnp.ones(K),
-        "differs": jnp.asarray(np.where(odd, 0.16, 0.01), jnp.float32),
+        "probability": np.ones(K, np.float32),
+        "differs": np.where(odd, 0.16, 0.01).astype(np.float32),
     }
-    quarters = noted(mutation, of._replace(rates=here), distance(of.parents))
-    each = [noted(mutation, some, distance(of.parents)) for some in (small, large)]
+    quarters = noted(mutation, LAYOUT, of._replace(rates=here), distance)
+    each = [noted(mutation, LAYOUT, some, distance) for some in (small, large)]
     np.testing.assert_array_equal(quarters, np.where(odd, each[1], each[0]))
     assert set((each[1] - each[0]).tolist()) <= {15, 16, 17}
-    assert not noted(mutation, of, distance(of.parents)).any()
+    assert not noted(mutation, LAYOUT, of, distance).any()

@@ -125,10 +125,10 @@ def test_only_a_mutation_with_moments_gets_the_change_of_behaviour() -> None:
 
 def family(count: int, size: int) -> Family:
     draws = Draws(streams(wide(np.arange(count)), wide(np.arange(count) * 7), *PURPOSES),
-                  jnp.arange(count) + 20)  # fmt: skip
-    notes = jnp.arange(count * size, dtype=jnp.int32).reshape(count, size)
-    rates = {name: jnp.arange(count) * scale for name, scale in (("a", 0.5), ("b", -3.0))}
-    return Family(jnp.arange(count * 10.0).reshape(count, 10), notes, rates, draws)
+                  np.arange(count) + 20)  # fmt: skip
+    notes = np.arange(count * size, dtype=np.int32).reshape(count, size)
+    rates = {name: np.arange(count) * scale for name, scale in (("a", 0.5), ("b", -3.0))}
+    return Family(np.arange(count * 10.0).reshape(count, 10), notes, rates, draws)
 
 
 def test_a_mutation_has_defaults_for_notes_moments_and_rates() -> None:

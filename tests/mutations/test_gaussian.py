@@ -11,7 +11,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from primordia.brains.layout import Layout
-from primordia.compiled import jit
 from primordia.mutations.calibrated import Calibrated
 from primordia.mutations.contract import Draws, Family
 from primordia.mutations.gaussian import Block, Gaussian
@@ -20,7 +19,8 @@ from primordia.random.gaussian import quantiles
 from primordia.random.keys import Purpose, Streams, bits, chance, stream, streams
 from primordia.random.wide import Wide, wide
 from tests.chance import binomial
-from tests.worlds import MEADOW, Lived, config
+from tests.mutations.families import inherited
+from tests.worlds import RING, Lived, config
 
 K, P = 64, 1001
 GENETIC = Purpose.MUTATE, Purpose.NOISE, Purpose.FOUNDER
@@ -39,7 +39,14 @@ def drawn(seed: int = 3, tick: int = 11, count: int = K) -> Streams:
 
 def noise(which: Wide, cells: np.ndarray | None = None, length: int = P) -> np.ndarray:
     cells = np.arange(len(which.hi)) if cells is None else cells
-    return quantiles()[np.asarray(noise_index(which, jnp.asarray(cells), length))]
+    return quantiles()[index(which, cells, length)]
+
+
+def index(which: Wide, cells: np.ndarray, length: int) -> np.ndarray:
+    return np.asarray(INDEX(which, cells, length))
+
+
+INDEX, CHANCE = jax.jit(noise_index, static_argnums=2), jax.jit(chance)
 
 
 def test_the_table_of_noise_is_the_standard_gaussian() -> None:
@@ -94,7 +101,7 @@ def test_each_weight_takes_its_noise_from_its_place_in_the_table(length: int) ->
             pair = bits(which.take(row), cell, i % m)
             word = int((pair.hi, pair.hi, pair.lo, pair.lo)[i // m])
             expected[row, i] = word >> 16 if (i // m) % 2 else word & 0xFFFF
-    np.testing.assert_array_equal(noise_index(which, jnp.asarray(cells), length), expected)
+    np.testing.assert_array_equal(index(which, cells, length), expected)
 
 
 def test_noise_does_not_depend_on_other_births() -> None:
@@ -103,13 +110,13 @@ def test_noise_does_not_depend_on_other_births() -> None:
     np.testing.assert_array_equal(noise(drawn(count=3)[Purpose.NOISE], some), all_of_them[some])
 
 
-def rates(layout: Layout, probability: object, scale: object, count: int) -> dict[str, jax.Array]:
+def rates(layout: Layout, probability: object, scale: object, count: int) -> dict[str, np.ndarray]:
     """Return the rates of K equal births, from one value for all blocks or one for each."""
     table = {}
     for field, values in (("probability", probability), ("scale", scale)):
         each = np.broadcast_to(np.array(values, np.float32), len(layout.names))
         for block, value in zip(layout.names, each, strict=True):
-            table[f"blocks.{block}.{field}"] = jnp.full(count, value, jnp.float32)
+            table[f"blocks.{block}.{field}"] = np.full(count, value, np.float32)
     return table
 
 
@@ -117,11 +124,9 @@ def children(
     layout: Layout, parents: np.ndarray, probability: object, scale: object = 1.0
 ) -> tuple[np.ndarray, np.ndarray]:
     count = len(parents)
-    draws = Draws(drawn(count=count), jnp.arange(count))
-    notes = jnp.zeros((count, 0), jnp.int32)
-    table = rates(layout, probability, scale, count)
-    made = Gaussian().inherit(layout, Family(jnp.asarray(parents), notes, table, draws))
-    return np.asarray(made[0]), np.asarray(made[1])
+    draws = Draws(drawn(count=count), np.arange(count, dtype=np.int32))
+    notes, table = np.zeros((count, 0), np.int32), rates(layout, probability, scale, count)
+    return inherited(Gaussian(), layout, Family(parents, notes, table, draws))
 
 
 @pytest.mark.parametrize("probability", [0.0, 0.1, 0.5, 0.999, 1.0])
@@ -200,22 +205,14 @@ def test_children_are_those_of_numpy_bit_for_bit(
     parents = (rng.normal(size=(K, P)) * rng.choice([1e-3, 1, 100], (K, 1))).astype(np.float32)
     parents[0, :5] = [0.0, -0.0, np.nan, np.inf, -np.inf]
     scales = np.float32(scale) * np.array([1, 0.3, 0.7], np.float32)
-    word = bits(drawn()[Purpose.MUTATE], jnp.arange(K)).hi
-    takes = np.asarray(chance(word[:, None], jnp.array([probability], jnp.float32)))
+    word = bits(drawn()[Purpose.MUTATE], np.arange(K)).hi
+    takes = np.asarray(CHANCE(np.asarray(word)[:, None], np.float32([probability])))
     change = noise(drawn()[Purpose.NOISE]) * np.repeat(scales, LAYOUT.sizes)
     with np.errstate(invalid="ignore"):
         expected = np.where(np.repeat(takes, LAYOUT.sizes, axis=1), parents + change, parents)
     genomes, mutated = children(LAYOUT, parents, probability, scales)
     same_bits(genomes, expected)
     np.testing.assert_array_equal(mutated, takes.any(axis=1))
-
-
-def test_children_made_in_a_compiled_function_have_the_same_bits() -> None:
-    parents = np.random.default_rng(1).normal(size=(K, P)).astype(np.float32)
-    draws, notes = Draws(drawn(), jnp.arange(K)), jnp.zeros((K, 0), jnp.int32)
-    inherit = jit(lambda family: Gaussian().inherit(LAYOUT, family))
-    made, _ = inherit(Family(jnp.asarray(parents), notes, rates(LAYOUT, 0.5, 0.3, K), draws))
-    same_bits(np.asarray(made), children(LAYOUT, parents, 0.5, 0.3)[0])
 
 
 def test_founders_are_noise_of_their_blocks_scales() -> None:
@@ -235,60 +232,36 @@ def test_a_copy_is_its_parent_to_the_last_bit() -> None:
 
 
 SCALES, PROBABILITIES = [0.3, 0.25, 0.01], [0.0, 0.6, 0.3]
-FOUNDER_SCALES = [1.0, 0.1, 0.4]
 
 
-@pytest.fixture(scope="module")
-def family() -> Lived:
-    """Live a world without deaths, so that every child can be compared with its parent."""
-    blocks = {
-        name: {"scale": scale, "probability": probability}
-        for name, scale, probability in zip(NAMES, SCALES, PROBABILITIES, strict=True)
-    }
-    blocks["recurrent"]["founder_scale"] = FOUNDER_SCALES[1]
-    blocks["output"]["founder_scale"] = FOUNDER_SCALES[2]
-    mutation = {"founder_scale": FOUNDER_SCALES[0], "blocks": blocks}
-    values = {"cells": 256, "replication": 0.3, "placement": {"topology": "well-mixed"}}
-    lived = Lived(config(MEADOW, mutation=mutation, **values), 100)
-    assert lived.table("births")["id"].tolist() == list(range(256))
-    return lived
-
-
-def weights(family: Lived) -> dict[str, np.ndarray]:
-    """Return the blocks of weights, with a row for each organism in order of birth."""
-    cells, genome = family.table("births")["cell"], family.engine.state.world.organisms.genome
-    return {block: np.asarray(genome[block]).reshape(256, -1)[cells] for block in NAMES}
-
-
-def test_children_differ_from_their_parents_as_the_settings_of_blocks_say(family: Lived) -> None:
-    births, genome = family.table("births"), weights(family)
-    parents = births["parent"][1:].astype(int)
-    change = {name: block[1:] - block[parents] for name, block in genome.items()}
-    moved = {name: (each != 0).any(axis=1) for name, each in change.items()}
-    assert not moved["input"].any()
-    assert binomial(int(moved["recurrent"].sum()), 255, 0.6)
-    assert binomial(int(moved["output"].sum()), 255, 0.3)
-    assert moved["recurrent"][moved["output"]].all()
-    np.testing.assert_array_equal(births["cause"][1:] == "mutant", moved["recurrent"])
-    for name, scale in (("recurrent", 0.25), ("output", 0.01)):
-        values = change[name][moved[name]]
-        assert values.std() == pytest.approx(scale, rel=5 / np.sqrt(2 * values.size))
-    for block, scale in zip(genome.values(), FOUNDER_SCALES, strict=True):
-        assert block[0].std() == pytest.approx(scale, rel=5 / np.sqrt(2 * block[0].size))
-
-
-def test_genomes_in_a_world_are_those_of_numpy_bit_for_bit(family: Lived) -> None:
-    births = family.table("births")
-    genome = weights(family)
-    sizes = [block.shape[1] for block in genome.values()]
-    lived = np.concatenate(list(genome.values()), axis=1)
-    cells, ticks = jnp.asarray(births["cell"]), wide(births["tick"])
-    drawn = streams(name(family.config.seed, 256), ticks, *GENETIC)
+def test_genomes_in_a_world_are_those_of_numpy_bit_for_bit() -> None:
+    """No organism dies, so that every child can be compared with its parent."""
+    lived = Lived(config(RING), 1)
+    lived.change({"replication": 1.0, "hazard": 0.0})
+    for block, scale, probability in zip(NAMES, SCALES, PROBABILITIES, strict=True):
+        own = {"scale": scale, "probability": probability}
+        lived.change({f"mutation.blocks.{block}.{rate}": value for rate, value in own.items()})
+    lived.advance_to(100)
+    births, layout = lived.table("births"), lived.engine.law.heredity.layout
+    assert len(births["id"]) == 48
+    cells, worlds = births["cell"].astype(np.int32), births["world"].astype(int)
+    genomes = lived.genomes()[12 * worlds + cells]
+    seeds = np.array(lived.config.world_seeds, np.uint64)[worlds]
+    drawn = streams(wide(seeds), wide(births["tick"]), *GENETIC)
     word = bits(drawn[Purpose.MUTATE], cells).hi
-    takes = np.asarray(chance(word[:, None], jnp.array([PROBABILITIES], jnp.float32)))
-    takes, scale = np.repeat(takes, sizes, axis=1), np.repeat(np.float32(SCALES), sizes)
-    spread = np.repeat(np.float32(FOUNDER_SCALES), sizes)
-    same_bits((noise(drawn[Purpose.FOUNDER], cells, lived.shape[1]) * spread)[0], lived[0])
-    parents = lived[births["parent"][1:].astype(int)]
-    change = noise(drawn[Purpose.NOISE], cells, lived.shape[1])[1:] * scale
-    same_bits(np.where(takes[1:], parents + change, parents), lived[1:])
+    takes = np.asarray(CHANCE(np.asarray(word)[:, None], np.float32([PROBABILITIES])))
+    mutant = np.repeat(takes, layout.sizes, axis=1)
+    scale = np.repeat(np.float32(SCALES), layout.sizes)
+    of = {key: row for row, key in enumerate(zip(worlds, births["id"], strict=True))}
+    parents = births["parent"]
+    child = ~np.isnan(parents)
+    assert child.sum() == 44
+    rows = [
+        of[world, int(parent)] for world, parent in zip(worlds[child], parents[child], strict=True)
+    ]
+    founders = noise(drawn[Purpose.FOUNDER], cells, layout.length) * np.float32(0.01)
+    same_bits(genomes[~child], founders[~child])
+    change = noise(drawn[Purpose.NOISE], cells, layout.length) * scale
+    expected = np.where(mutant[child], genomes[rows] + change[child], genomes[rows])
+    same_bits(genomes[child], expected)
+    np.testing.assert_array_equal(births["cause"][child] == "mutant", takes[child].any(axis=1))

@@ -1,18 +1,19 @@
 """Heritable mutation: the size of mutations is inherited, and mutates in whole steps."""
 
-import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from primordia.law.heredity import Birth
-from primordia.mutations.contract import PURPOSES, Draws, Family
+from primordia.compiled import shared
+from primordia.law.heredity import Birth, Heredity
+from primordia.mutations.contract import Family
 from primordia.mutations.gaussian import Block, Gaussian
 from primordia.mutations.heritable import Heritable
 from primordia.mutations.lengths import length
-from primordia.random.keys import Purpose, bits, streams
+from primordia.random.keys import Purpose, bits
 from primordia.random.wide import wide
 from primordia.testing import check_mutation
 from tests.chance import binomial
+from tests.mutations.families import drawn, inherited, noted, rates
 from tests.mutations.test_gaussian import LAYOUT
 from tests.worlds import MEADOW, law_of
 
@@ -20,17 +21,16 @@ K = 4_000
 
 
 def family(mutation: Gaussian, quarters: int = 0) -> Family:
-    draws = Draws(streams(wide(np.arange(K)), wide(np.zeros(K)), *PURPOSES), jnp.arange(K))
-    rates = {name: jnp.full(K, each) for name, each in mutation.rates(LAYOUT).items()}
-    parents = jnp.zeros((K, LAYOUT.length))
-    return Family(parents, jnp.full((K, 1), quarters, jnp.int32), rates, draws)
+    parents = np.zeros((K, LAYOUT.length), np.float32)
+    notes = np.full((K, 1), quarters, np.int32)
+    return Family(parents, notes, rates(mutation, LAYOUT, K), drawn(K))
 
 
 @pytest.mark.parametrize("stride", [1, 4])
 def test_the_exponent_of_a_mutant_takes_any_step_up_to_the_stride(stride: int) -> None:
     mutation = Heritable(stride=stride, probability=0.5)
-    notes = np.asarray(mutation.note(LAYOUT, family(mutation, 5), None))[:, 0]
-    mutants = np.asarray(mutation.inherit(LAYOUT, family(mutation))[1])
+    notes = noted(mutation, LAYOUT, family(mutation, 5))
+    mutants = inherited(mutation, LAYOUT, family(mutation))[1]
     assert (notes[~mutants] == 5).all()
     steps, counts = np.unique(notes[mutants] - 5, return_counts=True)
     assert steps.tolist() == list(range(-stride, stride + 1))
@@ -47,13 +47,13 @@ def test_the_step_of_a_mutant_is_drawn_by_its_second_word() -> None:
         for draw in (0, 1)
     )
     expected = np.where(first < 2**31, 5 + (second * 7 >> 32) - 3, 5)
-    np.testing.assert_array_equal(mutation.note(LAYOUT, of, None)[:, 0], expected)
+    np.testing.assert_array_equal(noted(mutation, LAYOUT, of), expected)
 
 
 @pytest.mark.parametrize(("quarters", "bound"), [(16, "coarsest"), (-48, "finest")])
 def test_the_exponent_stays_within_its_bounds(quarters: int, bound: str) -> None:
     mutation = Heritable(probability=1.0)
-    notes = np.asarray(mutation.note(LAYOUT, family(mutation, quarters), None))
+    notes = noted(mutation, LAYOUT, family(mutation, quarters))
     inside = notes <= quarters if bound == "coarsest" else notes >= quarters
     assert inside.all()
     assert (notes == quarters).mean() == pytest.approx(5 / 9, abs=0.05)
@@ -62,10 +62,10 @@ def test_the_exponent_stays_within_its_bounds(quarters: int, bound: str) -> None
 
 def test_noise_is_that_of_the_gaussian_times_its_length() -> None:
     fixed, mutation = Gaussian(probability=1.0, scale=0.5), Heritable(probability=1.0, scale=0.5)
-    base = np.asarray(fixed.inherit(LAYOUT, family(fixed))[0])
+    base = inherited(fixed, LAYOUT, family(fixed))[0]
     for quarters in (-4, 0, 3):
-        noise = np.asarray(mutation.inherit(LAYOUT, family(mutation, quarters))[0])
-        np.testing.assert_allclose(noise, base * np.asarray(length(jnp.int32(quarters))), rtol=1e-6)
+        noise = inherited(mutation, LAYOUT, family(mutation, quarters))[0]
+        np.testing.assert_allclose(noise, base * np.asarray(length(np.int32(quarters))), rtol=1e-6)
 
 
 @pytest.mark.slow
@@ -80,16 +80,13 @@ def test_founders_begin_with_exponent_0_whatever_the_cell_held_before() -> None:
     birth = Birth(
         seed=wide(np.zeros(count)),
         number=wide(np.arange(count)),
-        draws=Draws(
-            streams(wide(np.arange(count)), wide(np.zeros(count)), *PURPOSES), jnp.arange(count)
-        ),
-        founder=jnp.arange(count) % 2 == 0,
-        rates={
-            name: jnp.full(count, each) for name, each in mutation.rates(heredity.layout).items()
-        },
+        draws=drawn(count),
+        founder=np.arange(count) % 2 == 0,
+        rates=rates(mutation, heredity.layout, count),
     )
-    parents = jnp.zeros((count, heredity.layout.length))
-    newborn = heredity.make_newborn(birth, parents, jnp.full((count, 1), 9, jnp.int32), None)
+    parents = np.zeros((count, heredity.layout.length), np.float32)
+    made = shared(Heredity.make_newborn, heredity)
+    newborn = made(birth, parents, np.full((count, 1), 9, np.int32), None)
     quarters = np.asarray(newborn.notes)[:, 0]
     assert (quarters[::2] == 0).all()
     assert (abs(quarters[1::2] - 9) <= 4).all()
@@ -99,8 +96,8 @@ def test_founders_begin_with_exponent_0_whatever_the_cell_held_before() -> None:
 def test_the_exponent_takes_a_step_only_if_a_block_mutates() -> None:
     blocks = {"input": Block(probability=0.0), "recurrent": Block(probability=0.6)}
     mutation = Heritable(probability=0.2, blocks=blocks, stride=16)
-    notes = np.asarray(mutation.note(LAYOUT, family(mutation), None))[:, 0]
-    children, mutants = (np.asarray(each) for each in mutation.inherit(LAYOUT, family(mutation)))
+    notes = noted(mutation, LAYOUT, family(mutation))
+    children, mutants = inherited(mutation, LAYOUT, family(mutation))
     assert binomial(int(mutants.sum()), K, 0.6)
     np.testing.assert_array_equal(mutants, (children != 0).any(axis=1))
     assert not notes[~mutants].any()
@@ -109,7 +106,7 @@ def test_the_exponent_takes_a_step_only_if_a_block_mutates() -> None:
 
 def test_the_settings_bound_the_exponent_on_both_sides() -> None:
     mutation = Heritable(probability=1.0, stride=16, finest=-3, coarsest=5)
-    notes = np.asarray(mutation.note(LAYOUT, family(mutation, 1), None))
+    notes = noted(mutation, LAYOUT, family(mutation, 1))
     assert np.unique(notes).tolist() == list(range(-3, 6))
     assert binomial(int((notes == -3).sum()), K, 13 / 33)
     assert binomial(int((notes == 5).sum()), K, 13 / 33)
@@ -120,7 +117,7 @@ def test_each_child_has_the_noise_of_its_own_exponent_and_of_its_blocks_scale() 
     fixed = Gaussian(probability=1.0, scale=0.5, blocks=blocks)
     mutation = Heritable(probability=1.0, scale=0.5, blocks=blocks)
     quarters = np.arange(K) % 5 * 4 - 8
-    of = family(mutation)._replace(notes=jnp.asarray(quarters[:, None], jnp.int32))
-    base = np.asarray(fixed.inherit(LAYOUT, family(fixed))[0])
-    noise = np.asarray(mutation.inherit(LAYOUT, of)[0])
+    of = family(mutation)._replace(notes=quarters[:, None].astype(np.int32))
+    base = inherited(fixed, LAYOUT, family(fixed))[0]
+    noise = inherited(mutation, LAYOUT, of)[0]
     np.testing.assert_array_equal(noise, base * 2.0 ** (quarters[:, None] / 4))
