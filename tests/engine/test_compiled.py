@@ -16,7 +16,7 @@ from primordia.mutations.gaussian import Gaussian
 from primordia.runs import loop
 from primordia.settings.base import Settings
 from tests.toys import Meadow
-from tests.worlds import MILL, config
+from tests.worlds import HERD, MILL, config
 
 MIRROR = {**MILL, "habitat": {"name": "tests.toys:Mirror", "inner": "mill"}}
 
@@ -32,7 +32,7 @@ def compilations(caplog: pytest.LogCaptureFixture) -> list[str]:
 @pytest.mark.parametrize(
     "base",
     [
-        pytest.param(MILL, id="in JAX"),
+        pytest.param(HERD, id="in JAX"),
         pytest.param(MIRROR, id="on the host", marks=pytest.mark.slow),
     ],
 )

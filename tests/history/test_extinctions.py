@@ -19,7 +19,7 @@ from primordia.runs.archive import Archive
 from primordia.runs.lives import ALIVE, Lives, joined
 from tests.commands import here
 from tests.synthetic import world_of
-from tests.worlds import CLOCKWORK, MEADOW, config
+from tests.worlds import CLOCKWORK, HERD, config
 
 CELLS = 8
 COHORT = st.tuples(
@@ -139,12 +139,9 @@ def test_crashes_are_those_of_their_own_worlds() -> None:
 
 
 DYING: dict[str, Any] = {
-    **MEADOW,
-    "cells": 6,
-    "brain": {"hidden": 1},
-    "seeds": 3,
-    "replication": 0.15,
-    "hazard": 0.12,
+    **HERD,
+    "replication": 0.3,
+    "hazard": 0.15,
     "stop": {"ticks": 1500},
 }
 
@@ -175,7 +172,7 @@ def test_crashes_of_a_run_are_those_of_its_tables(run: primordia.Run, tmp_path: 
         for tick in range(world["ticks"] + 1):
             alive += changes.get(tick, 0)
             if tick in starts:
-                crashes, most = crashes + (most >= 3), 0
+                crashes, most = crashes + (2 * most >= HERD["cells"]), 0
             most = max(most, alive)
         assert (world["extinctions"], world["crashes"]) == (len(starts), crashes)
         seen.total[number], seen.crashes[number] = len(starts), crashes

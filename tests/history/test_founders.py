@@ -1,28 +1,34 @@
 """Founders that a world might have had: the k-th is the same, however many are made."""
 
-from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
-import primordia
 from primordia.history import founders as made
 from primordia.history.founders import founders
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import Wide, wide
-from primordia.runs.records import Records
+from tests.worlds import config
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory: pytest.TempPathFactory) -> Records:
-    folder: Path = tmp_path_factory.mktemp("run") / "run"
-    stop = {"ticks": 5, "until": "none"}
-    return primordia.run("CartPole-survival", folder, seeds=2, cells=4, stop=stop).opened()
+def run() -> Any:
+    """Return what founders need to know of a run, of which nothing has lived."""
+    settings = config("CartPole-survival", seeds=2)
+    law = settings.build_law(settings.build_habitat())
+    return SimpleNamespace(
+        config=settings,
+        world_seeds=settings.world_seeds,
+        heredity=law.heredity,
+        description=SimpleNamespace(beginning=dict(law.beginning)),
+        origin=None,
+    )
 
 
 def test_a_founder_depends_on_its_number_and_world_alone(
-    run: Records, monkeypatch: pytest.MonkeyPatch
+    run: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     few, many = founders(run, 1, 3), founders(run, 1, 150)
     np.testing.assert_array_equal(few, many[:3])
@@ -32,7 +38,7 @@ def test_a_founder_depends_on_its_number_and_world_alone(
     np.testing.assert_array_equal(founders(run, 1, 20), many[:20])
 
 
-def test_the_first_founders_are_those_that_they_always_were(run: Records) -> None:
+def test_the_first_founders_are_those_that_they_always_were(run: Any) -> None:
     """Tables of experiments name founders by their numbers."""
     first = [[0.00957343, -0.0262672, -0.00436687], [-0.00482515, 0.00808968, 0.01595863]]
     np.testing.assert_allclose(founders(run, 0, 2)[:, :3], first, rtol=1e-6)
@@ -44,7 +50,7 @@ def test_founders_are_made_for_their_world_as_it_began(monkeypatch: pytest.Monke
     numbers: list[int] = []
 
     class Past:
-        def __init__(self, run: Records) -> None: ...
+        def __init__(self, run: Any) -> None: ...
 
         def of_worlds(self, worlds: np.ndarray, ticks: np.ndarray) -> str:
             asked.append((worlds.tolist(), ticks.tolist()))

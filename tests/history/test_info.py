@@ -14,13 +14,10 @@ from primordia.history.threshold import Threshold
 from primordia.law.world import Cause
 from primordia.runs import loop
 from primordia.runs.arrays import NEVER
-from tests.worlds import MEADOW, config
+from tests.worlds import HERD, config
 
 SETTINGS: dict[str, Any] = {
-    **MEADOW,
-    "habitat": {**MEADOW["habitat"], "lifespan": 60},
-    "brain": {"hidden": 1},
-    "seeds": 3,
+    **HERD,
     "seed": 4,
     "replication": 0.3,
     "hazard": 0.02,
@@ -38,7 +35,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> primordia.Run:
 
 @pytest.mark.parametrize("number", range(3))
 def test_the_numbers_of_a_world_are_those_of_its_records(run: primordia.Run, number: int) -> None:
-    world, cells = run.info()["worlds"][number], SETTINGS.get("cells", 16)
+    world, cells = run.info()["worlds"][number], SETTINGS["cells"]
     born, died = (run.table(name).to_pylist() for name in ("births", "deaths"))
     born, died = ([row for row in rows if row["world"] == number] for rows in (born, died))
     ends = {row["id"]: row["tick"] for row in died}

@@ -109,13 +109,13 @@ def test_a_founder_after_extinction_takes_nothing_over() -> None:
 
 
 def test_chunks_of_any_length_give_the_same_lines() -> None:
-    outcomes, meadow = [], worlds.config(worlds.MEADOW, hazard=0.02, metabolism=None)
+    outcomes, herd = [], worlds.config(worlds.HERD)
     for ticks in (7, 2**20):
-        made = Engine(meadow)
+        made = Engine(herd)
         lines, limits = Lines([], crowd=8), made.limits({"ticks": 5000})
         while made.any_running(limits):
             made._ticks = ticks
-            lines.follow(turnovers(made.advance(limits), 16, 1)[0])
+            lines.follow(turnovers(made.advance(limits), 24, 3)[0])
         outcomes.append((lines.line_of, lines.takeovers))
     assert outcomes[0] == outcomes[1]
     assert outcomes[0][1]
