@@ -89,7 +89,9 @@ def test_repeating_its_actions_blindly_gives_the_same_life(poles: Path) -> None:
     In a changed habitat it still repeats the actions of its own game.
     """
     falls = primordia.load(poles).organism(0)
-    live, ignored = (falls.evaluate(games=3, ticks=300, senses=each) for each in ("live", "ignored"))
+    live, ignored = (
+        falls.evaluate(games=3, ticks=300, senses=each) for each in ("live", "ignored")
+    )
     assert live.lived.ticks[0] == ignored.lived.ticks[0] < 300
     same = live.lived.course == ignored.lived.course
     assert same.tolist() == [True, False, False]
