@@ -14,9 +14,9 @@ from primordia.assays.line import line
 from primordia.assays.subjects import of_run
 from primordia.runs import loop
 from tests.commands import here
-from tests.worlds import MEADOW, config
+from tests.worlds import HERD, config
 
-SETTINGS = {**MEADOW, "brain": {"hidden": 3}, "hazard": 0.05, "replication": 0.3, "seeds": 3}
+SETTINGS = {**HERD, "hazard": 0.05, "replication": 0.3}
 
 
 @pytest.fixture(scope="module")
@@ -58,13 +58,13 @@ def test_assays_of_lives_tell_what_python_returns(
     name: str, poles: primordia.Run, tmp_path: Path
 ) -> None:
     options = ["--games", 1, "--ticks", 60, "--out", tmp_path]
-    options += {"effects": ["--mutants", 2, "--scale", 0.1], "garden": ["--each", 2]}.get(name, [])
+    options += {"effects": ["--mutants", 5, "--scale", 0.1], "garden": ["--each", 2]}.get(name, [])
     told = here("assay", name, poles.path, *options, "--json")
     assert told.returncode == 0, told.stderr
     run, subjects = poles.opened(), of_run(poles.opened())
     champion = poles.oldest()
     expected: list[Any] = {
-        "effects": lambda: effects(subjects, (0.1,), count=2, games=1, ticks=60),
+        "effects": lambda: effects(subjects, (0.1,), count=5, games=1, ticks=60),
         "ablate": lambda: ablate(subjects, games=1, ticks=60),
         "garden": lambda: garden(run, each=2, games=1, ticks=60),
         "line": lambda: [line(run, champion.id, champion.world, games=1, ticks=60)],

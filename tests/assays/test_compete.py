@@ -1,6 +1,8 @@
 """Two genomes in one empty world."""
 
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -34,16 +36,39 @@ def sides(poles: primordia.Run) -> tuple[Subjects, Subjects]:
     return of_run(run, [(champion.id, 0)]), of_run(run, [(fallen, 0)])
 
 
-def test_the_longer_lived_takes_over_on_either_side(sides: tuple[Subjects, Subjects]) -> None:
-    good, bad = sides
-    found = compete(good, bad, worlds=6, ticks=400)
+@contextmanager
+def kept() -> Iterator[list[Lives]]:
+    """Keep the lives of all worlds of a competition."""
+    lived: list[Lives] = []
+    shares = module._shares
+
+    def keep(lives: Lives, *rest: Any) -> np.ndarray:
+        lived.append(lives)
+        return shares(lives, *rest)
+
+    with patch.object(module, "_shares", keep):
+        yield lived
+    causes = np.concatenate([lives.birth_cause for lives in lived])
+    assert (causes == BirthCause.COPY).sum() > 20
+    assert not (causes == BirthCause.MUTANT).any()
+
+
+def test_the_longer_lived_takes_over_and_children_are_exact_copies(
+    sides: tuple[Subjects, Subjects],
+) -> None:
+    with kept() as lived:
+        found = compete(*sides, worlds=6, ticks=400)
+    assert len(lived) == 6
     assert found.won == (6, 0)
     assert found.p == pytest.approx(2 / 2**6)
     assert found.share[:, -1].min() > 0.8
-    swapped = compete(bad, good, worlds=6, ticks=400)
-    assert swapped.won == (0, 6)
-    again = compete(good, bad, worlds=6, ticks=400)
+    again = compete(*sides, worlds=6, ticks=400)
     np.testing.assert_array_equal(found.share, again.share)
+
+
+@pytest.mark.slow
+def test_the_longer_lived_takes_over_on_the_other_side(sides: tuple[Subjects, Subjects]) -> None:
+    assert compete(*sides[::-1], worlds=6, ticks=400).won == (0, 6)
 
 
 def test_half_of_the_cells_begin_with_either(sides: tuple[Subjects, Subjects]) -> None:
@@ -53,23 +78,15 @@ def test_half_of_the_cells_begin_with_either(sides: tuple[Subjects, Subjects]) -
     np.testing.assert_array_equal(found.share[:, 1], 0.5)  # at tick 1 few have died
 
 
-def test_a_genome_against_itself_wins_as_often_as_it_loses_and_children_are_exact_copies(
+@pytest.mark.slow
+def test_a_genome_against_itself_wins_as_often_as_it_loses(
     sides: tuple[Subjects, Subjects],
 ) -> None:
-    lived: list[Lives] = []
-    shares = module._shares
-
-    def kept(lives: Lives, *rest: Any) -> np.ndarray:
-        lived.append(lives)
-        return shares(lives, *rest)
-
-    with patch.object(module, "_shares", kept):
+    with kept() as lived:
         found = compete(sides[1], sides[1], worlds=20, ticks=400)
+    assert len(lived) == 20
     assert sum(found.won) > 10
     assert found.p > 0.05
-    for lives in lived:
-        assert len(lives) > 50
-        assert not (lives.birth_cause == BirthCause.MUTANT).any()
 
 
 def test_one_organism_competes_on_a_side(poles: primordia.Run) -> None:

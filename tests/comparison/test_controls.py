@@ -1,6 +1,7 @@
 """Evaluation with controls: who is chosen among how many, and by which games they are judged."""
 
 import json
+import shutil
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, NamedTuple
@@ -21,6 +22,7 @@ from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
 from tests.commands import complains, here
 from tests.synthetic import worlds_of
+from tests.trouble import newest, reseal
 
 LONG = 50
 """Ticks up to which founders live when the best is chosen."""
@@ -29,9 +31,18 @@ LONG = 50
 @pytest.fixture(scope="module")
 def poles(tmp_path_factory: pytest.TempPathFactory) -> primordia.Run:
     """Make two worlds in which poles fall."""
-    folder = tmp_path_factory.mktemp("poles") / "run"
-    settings = {"seeds": 2, "cells": 8, "stop": {"ticks": 500, "until": "none"}}
-    return primordia.run("CartPole-survival", folder, saturation_ticks=LONG, **settings)
+    folder = tmp_path_factory.mktemp("poles")
+    run = primordia.run("CartPole-survival", folder / "run", seeds=2, cells=16, stop={"ticks": 500})
+    return changed(run, folder / "changed", saturation_ticks=LONG)
+
+
+def changed(run: primordia.Run, folder: Path, **settings: Any) -> primordia.Run:
+    """Return a copy of a run that tells of other settings."""
+    shutil.copytree(run.path, folder)
+    after = run.opened().config.model_copy(update=settings)
+    (folder / "config.toml").write_text(after.to_toml())
+    reseal(newest(folder))
+    return primordia.load(folder)
 
 
 def test_each_world_has_a_champion_and_as_many_founders_as_births(poles: primordia.Run) -> None:
@@ -90,14 +101,10 @@ def test_founders_are_drawn_once_each_and_are_none_of_the_runs_own(poles: primor
 
 
 def test_founders_of_given_genomes_take_these(poles: primordia.Run, tmp_path: Path) -> None:
-    poles.export(tmp_path / "two.safetensors", 0, 3)
-    settings: Any = {
-        "cells": 4,
-        "stop": {"ticks": 20},
-        "ancestors": (str(tmp_path / "two.safetensors"),),
-    }
-    run = primordia.run("CartPole-survival", tmp_path / "run", **settings).opened()
-    given = genomes.read(settings["ancestors"], run.layout)
+    file = str(tmp_path / "two.safetensors")
+    poles.export(Path(file), 0, 3)
+    run = changed(poles, tmp_path / "run", ancestors=(file,)).opened()
+    given = genomes.read([file], run.layout)
     made = founders(run, 0, 4)
     assert {each.tobytes() for each in made} == {each.tobytes() for each in given}
 

@@ -12,10 +12,11 @@ from primordia.comparison.pace import LATE, WINDOWS, pace
 from primordia.runs import loop
 from tests.commands import here
 from tests.synthetic import LIVED, alive, world_of
-from tests.worlds import MEADOW, config
+from tests.worlds import HERD, config
 
 TICKS = 7
 """ticks of a window"""
+LIFESPAN = HERD["habitat"]["lifespan"]
 
 
 @given(LIVED, LIVED, st.integers(0, 20))
@@ -40,17 +41,18 @@ def test_every_tick_and_every_death_counts_once(
 
 
 def test_worlds_that_never_saturate_are_compared_by_ticks_for_each_death(tmp_path: Path) -> None:
-    """Half the hazard doubles the ticks for each death; saturation is not mentioned."""
-    runs = []
-    for name, hazard, ticks in (("rough", 0.02, 600), ("mild", 0.01, 700)):
-        settings = {**MEADOW, "brain": {"hidden": 1}, "seeds": 4, "hazard": hazard}
+    """They are the mean lifespan where accidents kill, or age. Saturation is not mentioned."""
+    runs, hazards = [], {"rough": 0.04, "mild": 0.01}
+    for (name, hazard), ticks in zip(hazards.items(), (600, 700), strict=True):
+        settings = {**HERD, "hazard": hazard, "replication": 0.2, "stop": {"ticks": ticks}}
         runs.append(tmp_path / name)
-        loop.start(config({**settings, "replication": 0.2, "stop": {"ticks": ticks}}), runs[-1])
-    rough, mild = primordia.compare(*runs).arms
-    assert rough.pace.edges[-1] == mild.pace.edges[-1] == 600
-    assert np.median(rough.measured["pace"].value) == pytest.approx(50, rel=0.2)
-    assert np.median(mild.measured["pace"].value) == pytest.approx(100, rel=0.2)
-    assert (mild.measured["longest"].value > 100).all()
+        loop.start(config(settings), runs[-1])
+    arms = primordia.compare(*runs).arms
+    for arm, hazard in zip(arms, hazards.values(), strict=True):
+        assert arm.pace.edges[-1] == 600
+        lifespan = (1 - (1 - hazard) ** LIFESPAN) / hazard
+        assert np.median(arm.measured["pace"].value) == pytest.approx(lifespan, rel=0.2)
+    assert (arms[1].measured["longest"].value == LIFESPAN).all()
     printed = here("compare", *runs, "--out", tmp_path / "figures").stdout
     assert "ticks lived for each death, late" in printed
     assert "births to" not in printed

@@ -28,14 +28,18 @@ from tests.synthetic import worlds_of
 from tests.worlds import MEADOW, config
 
 
+def six_worlds(folder: Path, **settings: Any) -> primordia.Run:
+    """Return an arm of six worlds of poles."""
+    runs = [folder / str(seed) for seed in (0, 2, 4)]
+    for run in runs:
+        own = {"seed": int(run.name), "seeds": 2, "cells": 16, **settings}
+        primordia.run("CartPole-survival", run, **own)
+    return primordia.load(runs)
+
+
 @pytest.fixture(scope="module")
-def poles(tmp_path_factory: pytest.TempPathFactory) -> dict[str, primordia.Run]:
-    """Make six worlds with heredity, and six without."""
-    folder, settings = tmp_path_factory.mktemp("poles"), {"seeds": 6, "stop": {"ticks": 12_000}}
-    return {
-        name: primordia.run("CartPole-survival", folder / name, inheritance=name, **settings)
-        for name in ("parent", "founder")
-    }
+def poles(tmp_path_factory: pytest.TempPathFactory) -> primordia.Run:
+    return six_worlds(tmp_path_factory.mktemp("poles"), stop={"ticks": 12_000})
 
 
 def of(original: list[list[int]], redrawn: list[list[int]], cut: int = 100) -> Shadow:
@@ -45,17 +49,19 @@ def of(original: list[list[int]], redrawn: list[list[int]], cut: int = 100) -> S
     return Shadow("run", len(world), world.astype(np.int32), *lives, cut)  # type: ignore[call-arg]
 
 
-def test_selection_is_found_where_children_inherit(poles: dict[str, primordia.Run]) -> None:
-    found = poles["parent"].shadow(40, 500)
+def test_selection_is_found_where_children_inherit(poles: primordia.Run) -> None:
+    found = poles.shadow(40, 500)
     assert found.longer == (6, 0)
     assert found.p == 2 / 2**6
     assert found.ratio_interval is not None
     assert 1.5 < found.ratio_interval[0] <= found.ratio <= found.ratio_interval[1]
 
 
-def test_nothing_is_found_where_children_inherit_nothing(poles: dict[str, primordia.Run]) -> None:
+@pytest.mark.slow
+def test_nothing_is_found_where_children_inherit_nothing(tmp_path: Path) -> None:
     """Founders are drawn, and no draw has anything to do with those before it."""
-    found = poles["founder"].shadow(40, 500)
+    arm = six_worlds(tmp_path, inheritance="founder", stop={"ticks": 12_000})
+    found = arm.shadow(40, 500)
     assert found.p > 0.05
     assert found.ratio_interval is not None
     assert found.ratio_interval[0] < 1 < found.ratio_interval[1]
@@ -69,8 +75,8 @@ def test_nothing_is_found_where_only_accidents_kill(tmp_path: Path) -> None:
     assert (found.longer, found.p, found.ratio) == ((0, 0), 1.0, 1.0)
 
 
-def test_a_life_is_the_same_beside_any_others(poles: dict[str, primordia.Run]) -> None:
-    run = poles["parent"].opened()
+def test_a_life_is_the_same_beside_any_others(poles: primordia.Run) -> None:
+    run = poles.opened()
     rows = np.flatnonzero(run.lives.rank < 60)[::6]
     for redrawn in (False, True):
         together = _lifespans(run, rows, redrawn, 100)
@@ -80,9 +86,9 @@ def test_a_life_is_the_same_beside_any_others(poles: dict[str, primordia.Run]) -
 
 
 def test_a_life_has_the_climate_of_its_birth(
-    poles: dict[str, primordia.Run], monkeypatch: pytest.MonkeyPatch
+    poles: primordia.Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    run, asked = poles["parent"].opened(), []
+    run, asked = poles.opened(), []
     found = PastClimate.of_lives
 
     def of_lives(self: PastClimate, lives: Lives, ticks: np.ndarray) -> Climates:
@@ -186,24 +192,23 @@ def test_lives_are_cut_at_the_age_of_saturation_or_at_a_given_one(
         shadow(run)
 
 
-def test_the_command_prints_what_python_gives(poles: dict[str, primordia.Run]) -> None:
-    run = poles["parent"]
-    done = here("shadow", run.path, "--organisms", 10, "--ticks", 100, "--json")
-    told = run.shadow(10, 100).to_dict()
+def test_the_command_prints_what_python_gives(poles: primordia.Run) -> None:
+    words = "shadow", poles.path, *poles.others, "--organisms", 10, "--ticks", 100
+    done = here(*words, "--json")
+    told = poles.shadow(10, 100).to_dict()
     assert json.loads(done.stdout) == {"arms": [{**told, "interval": list(told["interval"])}]}
-    text = here("shadow", run.path, "--organisms", 10, "--ticks", 100).stdout
-    assert text.startswith("parent: 60 organisms, each born again alone, from ")
+    text = here(*words).stdout
+    assert text.startswith("0: 60 organisms, each born again alone, from ")
     assert "95 % interval" in text
-    complains(here("shadow", run.path, "--organisms", 0), 2, "--organisms", "0")
-    complains(here("shadow", run.path.parent / "no"), 2, "no")
+    complains(here("shadow", poles.path, "--organisms", 0), 2, "--organisms", "0")
+    complains(here("shadow", poles.path.parent / "no"), 2, "no")
 
 
-def test_organisms_are_spread_over_all_births(poles: dict[str, primordia.Run]) -> None:
+def test_organisms_are_spread_over_all_births(poles: primordia.Run) -> None:
     """Each world gives the number asked for, or all that it has."""
-    run = poles["parent"]
-    lives = run.lives()
-    assert len(run.shadow(10**6, 1).world) == len(lives) - 6  # the last of each world is left out
-    assert np.bincount(run.shadow(3, 1).world).tolist() == [3] * 6
+    lives = poles.lives()
+    assert len(poles.shadow(10**6, 1).world) == len(lives) - 6  # the last of each world is left out
+    assert np.bincount(poles.shadow(3, 1).world).tolist() == [3] * 6
 
 
 @pytest.mark.parametrize("redrawn", [False, True])

@@ -1,11 +1,14 @@
 """Runs for all tests of lives: poles and mills, and worlds in which organisms die in every way."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 import primordia
+from primordia.organism.reliving.in_jax import LifeInJax
+from primordia.organism.reliving.on_host import LifeOnHost
 from primordia.runs import loop
 from tests.worlds import MILL, config
 
@@ -19,6 +22,15 @@ WAYS: dict[str, Any] = {
 }
 """A world in which organisms die in every way: hunger, broken wheels, accidents, neighbours."""
 CLOCKED = {"name": "tests.toys:Clocked", "inner": "mill"}
+
+
+@pytest.fixture(scope="package", autouse=True)
+def _short_stretches() -> Iterator[None]:
+    """Live lives again in short stretches, so that most lives take several."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(LifeInJax, "TICKS", 512)
+        patch.setattr(LifeOnHost, "TICKS", 20)
+        yield
 
 
 @pytest.fixture(
@@ -47,5 +59,7 @@ def mill(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="package")
 def poles(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Make one world of poles, in which an organism lives long."""
     run = tmp_path_factory.mktemp("poles") / "run"
-    return primordia.run("CartPole-survival", run, stop={"ticks": 6000, "until": "none"}).path
+    stop = {"ticks": 6000, "until": "none"}
+    return primordia.run("CartPole-survival", run, cells=16, stop=stop).path

@@ -30,12 +30,6 @@ def pong(tmp_path_factory: pytest.TempPathFactory) -> Path:
     ).path
 
 
-@pytest.fixture(scope="module")
-def poles(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    run = tmp_path_factory.mktemp("poles") / "run"
-    return primordia.run("CartPole-survival", run, stop={"ticks": 3000, "until": "none"}).path
-
-
 def games_of(ticks: list[int], over: list[bool], food: list[float]) -> games.Games:
     course = np.arange(len(ticks), dtype=np.uint64)
     return games.Games(np.array(ticks), np.array(over), np.array(food), course, [])
@@ -89,23 +83,27 @@ def test_organisms_play_side_by_side_as_they_play_alone(
     assert evaluate(run, []) == []
 
 
-def test_repeating_its_actions_blindly_gives_the_same_life(pong: Path) -> None:
-    """Its actions, repeated in the same game, give the same life; with sticky buttons they do not.
+def test_repeating_its_actions_blindly_gives_the_same_life(poles: Path) -> None:
+    """Its actions, repeated in the same game, give the same life; in other games they do not.
 
-    With them it still repeats the actions of its own game.
+    In a changed habitat it still repeats the actions of its own game.
     """
-    run = Archive(pong)
-    oldest = Organism(run, int(np.argmax(np.where(run.lives.died, run.lives.lifespan, 0))))
-    live, ignored = oldest.evaluate(), oldest.evaluate(senses="ignored")
-    assert live.lived.ticks == ignored.lived.ticks == oldest.age
-    assert live.lived.course == ignored.lived.course
-    assert np.array_equal(live.lived.actions[0], ignored.lived.actions[0])
-    assert len(live.lived.actions[0]) == oldest.age
-    sticky = oldest.evaluate(senses="ignored", games=3, sticky=0.5, noops=30)
-    assert sticky.distinct == 3
-    (blind,), (seeing,) = sticky.lived.actions, live.lived.actions
-    both = min(len(blind), len(seeing))
+    falls = primordia.load(poles).organism(0)
+    live, ignored = (
+        falls.evaluate(games=3, ticks=300, senses=each) for each in ("live", "ignored")
+    )
+    assert live.lived.ticks[0] == ignored.lived.ticks[0] < 300
+    same = live.lived.course == ignored.lived.course
+    assert same.tolist() == [True, False, False]
+    (seeing,), (blind,) = live.lived.actions, ignored.lived.actions
+    assert np.array_equal(blind, seeing)
+    blind, acts = (
+        falls.evaluate(games=3, ticks=300, senses=each, spread=0.1).lived.actions[0]
+        for each in ("ignored", "live")
+    )
+    both = min(len(blind), len(acts))
     assert np.array_equal(blind[:both], seeing[:both])
+    assert not np.array_equal(blind[:both], acts[:both])
 
 
 @pytest.mark.slow
@@ -137,21 +135,6 @@ def test_one_random_game_is_not_taken_for_all_games(poles: Path) -> None:
     champions = here("evaluate", poles, "--games", 1, "--founders", 5, "--ticks", 50).stdout
     assert "champion" in champions
     assert "are the same" not in champions
-
-
-@pytest.mark.slow
-def test_an_organism_starves_by_the_metabolism_of_its_task(tmp_path: Path) -> None:
-    hungry = {"metabolism": {"store": 30.0, "gain": 0.5}, "stop": {"ticks": 10}}
-    loop.start(
-        config({**MEADOW, **hungry, "habitat": {**MEADOW["habitat"], "food": 1.0}}),
-        tmp_path / "run",
-    )
-    run = Archive(tmp_path / "run")
-    (evaluation,) = evaluate(run, [(0, 0)], games=2)
-    assert evaluation.lived.ticks.tolist() == [60, 60]
-    (cut,) = evaluate(run, [(0, 0)], games=2, ticks=59)
-    assert not cut.lived.over.any()
-    assert cut.to_dict()["alive_when_cut"] == 2
 
 
 @pytest.mark.slow
@@ -195,30 +178,28 @@ def test_any_setting_of_the_habitat_is_a_flag(poles: Path) -> None:
     assert json.loads(done.stdout)["lifespan"] == json.loads(plain.stdout)["lifespan"]
 
 
-def test_help_on_a_run_lists_the_settings_of_its_habitat(pong: Path, poles: Path) -> None:
-    printed = here("evaluate", pong, "--help").stdout
-    assert "--sticky" in printed
-    assert "probability that a frame repeats the last button [0.0]" in " ".join(printed.split())
-    assert "--angle_limit" in here("evaluate", poles, "--help").stdout
-    assert "--sticky" not in here("evaluate", poles, "--help").stdout.partition("Options")[2]
+def test_help_on_a_run_lists_the_settings_of_its_habitat(poles: Path, mill: Path) -> None:
+    printed = " ".join(here("evaluate", poles, "--help").stdout.split())
+    assert "fatal angle, degrees [12.0]" in printed
+    assert "--angle_limit" in printed
+    assert "--angle_limit" not in here("evaluate", mill, "--help").stdout
     assert "Settings of the habitat" not in here("evaluate", "--help").stdout
 
 
-def test_wrong_input_is_an_error_that_says_why(pong: Path, poles: Path) -> None:
+def test_wrong_input_is_an_error_that_says_why(poles: Path) -> None:
     for words, part in (
-        ((poles, "--sticky", "0.1"), "this run's habitat has no setting 'sticky'"),
-        ((poles, "--angle_limt", "9"), "did you mean 'angle_limit'?"),
-        ((poles, "--angle_limit"), "--angle_limit needs a value"),
-        ((poles, "--angle_limit", "-1"), "habitat.angle_limit"),
-        ((pong, "--sticky", "1.5"), "sticky"),
-        ((pong, "--open-loop", "--freeze-senses"), "exclude each other"),
-        ((pong, "--organism", 0, "--founders", 500), "exclude each other"),
-        ((pong, "--games", "0"), "--games"),
-        ((pong, "--organism", "9999"), "no organism 9999"),
+        (("--sticky", "0.1"), "this run's habitat has no setting 'sticky'"),
+        (("--angle_limt", "9"), "did you mean 'angle_limit'?"),
+        (("--angle_limit",), "--angle_limit needs a value"),
+        (("--angle_limit", "-1"), "habitat.angle_limit"),
+        (("--open-loop", "--freeze-senses"), "exclude each other"),
+        (("--organism", 0, "--founders", 500), "exclude each other"),
+        (("--games", "0"), "--games"),
+        (("--organism", "9999999"), "no organism 9999999"),
     ):
-        complains(here("evaluate", *words), 2, part)
+        complains(here("evaluate", poles, *words), 2, part)
 
 
-def test_settings_that_do_not_fit_the_brain_are_refused(pong: Path) -> None:
-    with pytest.raises(InputError, match=r"3 senses and 2 actions; .* 3 senses and 6 actions"):
-        primordia.load(pong).oldest().evaluate(actions="NOOP UP")
+def test_settings_that_do_not_fit_the_brain_are_refused(poles: Path) -> None:
+    with pytest.raises(InputError, match=r"1 senses and 2 actions; .* 4 senses and 2 actions"):
+        primordia.load(poles).oldest().evaluate(habitat={"senses": ["x"]})

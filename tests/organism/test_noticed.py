@@ -17,7 +17,7 @@ from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from primordia.runs.lives import ALIVE
-from tests.worlds import MEADOW, MILL, config
+from tests.worlds import CLOCKWORK, MEADOW, MILL, config
 
 HOST = {"name": "tests.toys:Mirror", "inner": "mill"}
 Change = Callable[[RelivedLife], None]
@@ -102,32 +102,27 @@ def test_a_game_counts_what_is_gathered_until_it_is_over(mill: Archive) -> None:
             assert value == expected, name
 
 
-def test_an_organism_that_starves_in_a_game_has_eaten_as_much_as_in_its_life(
-    tmp_path: Path,
-) -> None:
-    fed = {"habitat": {**MEADOW["habitat"], "food": 0.5}, "replication": 0.0}
-    settings = {**MEADOW, **fed, "brain": {"hidden": 1}, "metabolism": {"store": 20.0}}
-    loop.start(config({**settings, "stop": {"ticks": 100}}), tmp_path / "run")
-    run = Archive(tmp_path / "run")
-    (played,) = evaluate(run, [(0, 0)], games=3)
-    assert run.lives.lifespan[0] == 40
-    assert played.lived.ticks.tolist() == [40] * 3
-    assert played.lived.food.tolist() == [20.0] * 3
-    assert RelivedLife.of(run, 0).at_death == (0, 20 * ONE)
-
-
-def test_an_evaluation_is_under_the_latest_climate_of_the_organisms_world(tmp_path: Path) -> None:
-    """Life has become harder and then easier since the beginning, otherwise in each world."""
+def test_games_have_the_food_of_lives_and_the_latest_climate_of_their_world(tmp_path: Path) -> None:
+    """Life becomes harder and then easier, so its end changes."""
 
     def season(setting: str, at: int, value: float) -> dict[str, Any]:
         return {"kind": "schedule", "setting": f"metabolism.{setting}", "at": at, "value": value}
 
-    seasons = [season("drain", 20, 3.0), season("store", 30, 60.0), season("drain", 45, 6.0)]
-    settings = {**MEADOW, "brain": {"hidden": 1}, "seeds": 2, "replication": 0.2}
-    settings |= {"metabolism": {"store": 30.0}, "seasons": seasons, "placement": {"rule": "blind"}}
-    loop.start(config({**settings, "stop": {"ticks": 40}}), tmp_path / "run")
-    (played,) = evaluate(Archive(tmp_path / "run"), [(0, 1)], games=2)
-    assert played.lived.ticks.tolist() == [20, 20]
-    loop.resume(tmp_path / "run", {"ticks": 60})
-    (played,) = evaluate(Archive(tmp_path / "run"), [(0, 1)], games=2)
-    assert played.lived.ticks.tolist() == [10, 10]
+    seasons = [season("drain", 50, 3.0), season("store", 60, 60.0), season("drain", 75, 6.5)]
+    fed = {"habitat": {**MEADOW["habitat"], "food": 0.5}, "metabolism": {"store": 20.0}}
+    settings = {**CLOCKWORK, **fed, "seasons": seasons}
+
+    def played(ticks: int) -> tuple[list[int], list[float]]:
+        loop.resume(tmp_path / "run", {"ticks": ticks})
+        (found,) = evaluate(Archive(tmp_path / "run"), [(0, 1)], games=2)
+        (cut,) = evaluate(Archive(tmp_path / "run"), [(0, 1)], games=2, ticks=9)
+        assert (found.lived.over.all(), cut.to_dict()["alive_when_cut"]) == (True, 2)
+        return found.lived.ticks.tolist(), found.lived.food.tolist()
+
+    loop.start(config({**settings, "stop": {"ticks": 1}}), tmp_path / "run")
+    assert played(45) == ([40] * 2, [20.0] * 2)
+    run = Archive(tmp_path / "run")
+    assert run.lives.lifespan[0] == 40
+    assert RelivedLife.of(run, 0).at_death == (0, 20 * ONE)
+    assert played(70) == ([24] * 2, [12.0] * 2)
+    assert played(90) == ([10] * 2, [5.0] * 2)

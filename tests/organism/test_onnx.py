@@ -44,8 +44,8 @@ def test_a_model_acts_tick_for_tick_as_the_policy_does(name: str, tmp_path: Path
             before = {"memory": policy.memory}
 
 
-def test_a_discrete_action_is_its_number(tmp_path: Path) -> None:
-    run = primordia.run("CartPole-survival", tmp_path / "run", cells=16, stop={"ticks": 200})
+def test_a_discrete_action_is_its_number(poles: Path, tmp_path: Path) -> None:
+    run = primordia.load(poles)
     organism = run.oldest()
     done = here("export", run.path, "--organism", organism.id, tmp_path / "brain.onnx")
     assert done.returncode == 0, done.stderr
@@ -61,10 +61,9 @@ def test_a_discrete_action_is_its_number(tmp_path: Path) -> None:
 
 
 def test_what_cannot_be_a_model_is_one_line(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    poles: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    run = primordia.run("CartPole-survival", tmp_path / "run", cells=16, stop={"ticks": 200})
-    file = tmp_path / "brain.onnx"
+    run, file = primordia.load(poles), tmp_path / "brain.onnx"
     two = here("export", run.path, "--organism", 1, "--organism", 2, file)
     complains(two, 2, "one organism")
     monkeypatch.setitem(sys.modules, "jax2onnx", None)

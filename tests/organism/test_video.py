@@ -41,13 +41,13 @@ def test_a_video_shows_the_beginning_and_the_end_of_a_long_life(
 ) -> None:
     """They are half a minute each; here they are shorter, to save time."""
     assert replay.PART == 30
-    monkeypatch.setattr(replay, "PART", 4.0)
+    monkeypatch.setattr(replay, "PART", 1.0)
     done = here("replay", poles)
     assert done.returncode == 0, done.stderr
     oldest = primordia.load(poles).oldest()
     assert oldest.age > 1000
     assert done.stdout.strip() == str(poles / "videos" / f"world0-organism{oldest.id}.mp4")
-    assert len(frames(Path(done.stdout.strip()))) == 200 + 50 + 200 + 50
+    assert len(frames(Path(done.stdout.strip()))) == 50 + 50 + 50 + 50
 
 
 def test_lives_are_shown_side_by_side_in_the_order_of_birth(poles: Path) -> None:
