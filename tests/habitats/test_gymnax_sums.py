@@ -6,9 +6,10 @@ import jax
 import numpy as np
 from jax import lax
 
+from primordia.compiled import jit
 from primordia.habitats.gymnax.habitat import Gymnax
 from primordia.habitats.gymnax.sums import ordered
-from primordia.testing import check_habitat
+from primordia.random.trials import words
 
 
 def test_a_sum_over_nothing_is_zero_and_nothing_has_no_sums() -> None:
@@ -23,7 +24,20 @@ def test_a_sum_over_nothing_is_zero_and_nothing_has_no_sums() -> None:
 
 
 def test_sums_and_matrix_products_do_not_depend_on_the_number_of_bodies() -> None:
-    check_habitat(Gymnax(env="tests.walks:Turning"))
+    habitat = Gymnax(env="tests.walks:Turning", food="reward")
+
+    def lived(words: Any) -> Any:
+        def tick(bodies: Any, _: None) -> Any:
+            bodies, outcome = habitat.step(bodies, np.zeros((len(words), 2), np.float32))
+            return bodies, (habitat.sense(bodies), outcome.food)
+
+        return lax.scan(tick, habitat.reset(words), length=8)[1]
+
+    born = words(0, 32, habitat.words)
+    many = jit(lived)(born)
+    for count in (1, 31):
+        for all_, some in zip(many, jit(lived)(born[:count]), strict=True):
+            np.testing.assert_array_equal(all_[:, :count], some)
 
 
 def test_sums_and_matrix_products_are_those_of_numpy() -> None:
