@@ -45,7 +45,6 @@ def marked(names: Iterable[str], shown: set[str]) -> list[Any]:
     return [pytest.param(name, marks=() if name in shown else pytest.mark.slow) for name in names]
 
 
-
 def needed(task: str) -> None:
     if package := SIMULATORS.get(load(task).habitat["name"]):
         pytest.importorskip(package)
