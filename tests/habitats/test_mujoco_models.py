@@ -23,23 +23,15 @@ stop = { ticks = 20 }
 """
 
 
-@pytest.fixture
-def box(tmp_path: Path) -> Path:
-    """Make a run of a model whose file lies beside the TOML file that names it."""
-    (tmp_path / "box.xml").write_text(SLIDE.format(actuator=MOTOR))
+def test_a_users_model_lives_and_is_not_resumed_with_another_model(tmp_path: Path) -> None:
+    """The model's file lies beside the TOML file that names it."""
+    model = tmp_path / "box.xml"
+    model.write_text(same := SLIDE.format(actuator=MOTOR))
     (tmp_path / "box.toml").write_text(BOX)
-    return primordia.run(str(tmp_path / "box.toml"), tmp_path / "run").path
-
-
-def test_a_users_model_lives(box: Path) -> None:
+    box = primordia.run(str(tmp_path / "box.toml"), tmp_path / "run").path
     info = primordia.load(box).info()
     assert info["worlds"][0]["ticks"] == 20
     assert info["versions"]["mujoco"] == mujoco.__version__
-
-
-def test_a_run_is_not_resumed_with_another_model(box: Path) -> None:
-    model = box.parent / "box.xml"
-    same = model.read_text()
     model.write_text(same.replace("0.1", "0.2"))
     complains(here("resume", box, "--ticks", 30), 2, "box.xml has changed", "--inexact")
     model.write_text(same)
@@ -51,10 +43,13 @@ def test_a_model_named_by_a_flag_is_found_from_elsewhere(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "box.xml").write_text(SLIDE.format(actuator=MOTOR))
-    monkeypatch.chdir(tmp_path)
-    habitat = {"file": "box.xml", "senses": ["qpos"], "scored": {"file": "box.xml"}}
-    run = primordia.run("HalfCheetah-forager", "run", habitat=habitat, cells=2, stop={"ticks": 5})
     (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "elsewhere" / "box.toml").write_text(
+        BOX.replace("box.xml", "gymnasium:reacher.xml")
+    )
+    monkeypatch.chdir(tmp_path)
+    habitat = {"file": "box.xml", "scored": {"file": "box.xml"}}
+    run = primordia.run("elsewhere/box.toml", "run", habitat=habitat, stop={"ticks": 5})
     monkeypatch.chdir(tmp_path / "elsewhere")
     run = primordia.load(tmp_path / run.path)
     assert run.resume(ticks=8) == []

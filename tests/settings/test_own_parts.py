@@ -164,7 +164,7 @@ CASES = [(kind, *fault) for kind, faults in FAULTS.items() for fault in faults]
 
 @pytest.fixture
 def pond(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Return the file of a module that no test before has imported. A mind and a mutation lie beside it."""
+    """Return the file of a module that no test before has imported, beside a brain and a mutation."""
     monkeypatch.chdir(tmp_path)
     for name in ("pond", "mind", "still"):
         sys.modules.pop(name, None)
