@@ -174,10 +174,10 @@ def test_bodies_that_have_died_do_not_change_until_a_reset() -> None:
 
 def test_a_dying_body_keeps_its_own_senses_while_another_is_born() -> None:
     """Poles that are always pushed to one side fall in nine or ten ticks. A newborn pole is upright."""
-    many, over, together = LifeVectorEnv("CartPole-survival", 8), np.zeros(8, bool), 0
+    many, over, together = LifeVectorEnv("CartPole-survival", 3), np.zeros(3, bool), 0
     many.reset(seed=2)
     for _ in range(90):
-        senses, _, ended, _, _ = many.step(np.zeros(8, int))
+        senses, _, ended, _, _ = many.step(np.zeros(3, int))
         assert (np.abs(senses[ended]).max(axis=1) > 0.2).all()
         assert (np.abs(senses[over]) < 0.2).all()
         together += bool(ended.any() and over.any())
