@@ -11,10 +11,14 @@ from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
+import click
 import pytest
 
-from primordia.cli.commands import execute
+from primordia import config
+from primordia.cli.commands import commands, execute
+from primordia.cli.flags import take_limits
 from primordia.cli.streams import Printable
+from primordia.config import Config
 
 HERE = Path(__file__).parent.parent
 TREE = os.pathsep.join([str(HERE / "src"), str(HERE)])
@@ -49,6 +53,23 @@ def here(*words: object) -> subprocess.CompletedProcess[str]:
     for stream in (out, err):
         stream.seek(0)
     return subprocess.CompletedProcess(argv, status, out.read(), err.read())
+
+
+def well_formed(*words: str) -> Config | None:
+    """Read the words of a command as it does, and execute nothing.
+
+    Returns:
+        the settings of a run, unless its file is one that another command is still to write.
+    """
+    group: Any = commands
+    while isinstance(group.commands[words[0]], click.Group):
+        group, words = group.commands[words[0]], words[1:]
+    name, *rest = words
+    context = group.commands[name].make_context(name, rest)
+    task = context.params.get("task")
+    if name != "run" or (task.endswith(".toml") and not Path(task).exists()):
+        return None
+    return config.load(task, {**context.obj, "stop": take_limits(context.params)})
 
 
 def complains(done: subprocess.CompletedProcess[str], status: int, *parts: str) -> None:

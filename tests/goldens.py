@@ -218,6 +218,7 @@ def tasks() -> Iterator[tuple[str, Case]]:
     yield "pong-random", game("Pong-survival", habitat=random, evaluate=played)
     yield "Pong-survival-forager", game("Pong-survival-forager", **HUNGRY)
     yield "Breakout-survival-forager", game("Breakout-survival-forager", **HUNGRY)
+    yield "breakout-random-forager", game("Breakout-survival-forager", habitat=random, **HUNGRY)
     yield "BattleZone-survival", game("BattleZone-survival")
     yield "BattleZone-survival-forager", game("BattleZone-survival-forager", **HUNGRY)
     finer = {"seasons": [scheduled("mutation.probability", 100, 0.1)]}
@@ -281,7 +282,33 @@ def others() -> Iterator[tuple[str, Case]]:
         ratchet("metabolism.gain", "mean_age", 10.0, 0.9, 35),
         ratchet("hazard", "saturation", 0.3, 1.3, 20),
         ratchet("replication", "food", 0.1, 1.05, 25)])  # fmt: skip
-    yield "ancestors", poles(genesis="fill", ancestors=((9, 3), (11,)))
+    ancestors: dict[str, Any] = {"genesis": "fill", "ancestors": ((9, 3), (11,))}
+    yield "ancestors", poles(**ancestors)
+    yield (
+        "host-ancestors-founder-well-mixed",
+        poles(
+            inheritance="founder",
+            habitat={"name": "tests.toys:Clocked"},
+            placement={"rule": "empty-only", "topology": "well-mixed"},
+            **ancestors,
+        ),
+    )
+    yield (
+        "seasons-blocks-torus8-worlds",
+        toy(
+            MILL,
+            placement={"rule": "replacing", "topology": "torus8", "rows": 4},
+            seeds=3,
+            mutation={**MILL["mutation"], "blocks": blocks},
+            seasons=[
+                scheduled("mutation.scale", 150, 0.05),
+                scheduled("mutation.blocks.recurrent.scale", 200, 0.4),
+                ratchet("metabolism.gain", "mean_age", 10.0, 0.9, 35),
+                ratchet("hazard", "saturation", 0.3, 1.3, 20),
+                ratchet("replication", "food", 0.1, 1.05, 25),
+            ],
+        ),
+    )
 
 
 CASES = dict([*tasks(), *placements(), *others()])

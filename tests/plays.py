@@ -48,8 +48,12 @@ def played(file: str) -> dict[str, Any]:
         born = np.array(outcome.fatal)
         counts["fed"] += 0 if outcome.food is None else int(np.count_nonzero(outcome.food))
     table.close()
-    law = hashlib.sha256(json.dumps(values, sort_keys=True).encode()).hexdigest()
-    return {**counts, "play": digest.hexdigest(), "settings": law}
+    return {**counts, "play": digest.hexdigest(), "settings": settings_hash(file)}
+
+
+def settings_hash(file: str) -> str:
+    """Hash the settings in the file of a task."""
+    return hashlib.sha256(json.dumps(settings_of(file), sort_keys=True).encode()).hexdigest()
 
 
 def in_process(settings: config.Config) -> config.Config:

@@ -58,18 +58,31 @@ LIVING = [
 ]
 
 
-def forget() -> None:
-    """Act as another process, which has not imported the code."""
-    for name in ("pond", "pond_depth"):
+def forget(*modules: str) -> None:
+    """Act as another process, which has not imported the code: that of the pond, or some modules."""
+    for name in modules or ("pond", "pond_depth"):
         sys.modules.pop(name, None)
         own_code._admitted.sources.pop(name, None)
         code._trusted.clear()
 
 
+_lived: dict[tuple[bytes, ...], Path] = {}
+"""Folders with a run and the user's trust, by the files that the run was begun with."""
+
+
 def begun(folder: Path) -> Path:
-    primordia.run(str(folder / "task.toml"), folder / "run")
-    forget()
-    return folder / "run"
+    """Begin a run, in a folder whose parent has the user's trust. A run of the same files is a copy."""
+    run, state = folder / "run", folder.parent / "state"
+    files = tuple(path.read_bytes() for path in sorted(folder.iterdir()))
+    if files not in _lived:
+        primordia.run(str(folder / "task.toml"), run)
+        forget()
+        _lived[files] = folder.parent / "lived"
+        shutil.copytree(run, _lived[files] / "run")
+        shutil.copytree(state, _lived[files] / "state")
+        return run
+    shutil.copytree(_lived[files] / "state", state)
+    return Path(shutil.copytree(_lived[files] / "run", run))
 
 
 def elsewhere(folder: Path, run: Path, monkeypatch: pytest.MonkeyPatch) -> Path:

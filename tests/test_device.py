@@ -41,7 +41,8 @@ import primordia
 primordia.load(sys.argv[1]).rebuild(3)
 assert settings() == before
 assert {**os.environ, "XLA_FLAGS": ""} == {**variables, "XLA_FLAGS": ""}
-primordia.run("CartPole-survival", sys.argv[2], cells=8, stop={"ticks": 50})
+law = {"cells": 8, "hazard": 0.002, "sample_every": 500}
+primordia.run("CartPole-survival", sys.argv[2], **law, stop={"ticks": 50})
 assert settings() == before
 print(primordia.load(sys.argv[2]).info()["versions"]["instruction_set"], os.environ["XLA_FLAGS"])
 """
@@ -55,8 +56,10 @@ on_x86 = pytest.mark.skipif(
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run in a law of other tests, whose code is kept for the processes that tests start."""
     path = tmp_path_factory.mktemp("device") / "run"
-    return primordia.run("CartPole-survival", path, cells=8, stop={"ticks": 50}).path
+    law = {"cells": 8, "hazard": 0.002, "sample_every": 500}
+    return primordia.run("CartPole-survival", path, **law, stop={"ticks": 50}).path
 
 
 def python(program: str, *words: object, flags: str = "") -> str:
@@ -76,9 +79,9 @@ def test_looking_at_a_run_changes_no_setting_of_the_process(run: Path) -> None:
 @pytest.mark.parametrize(
     ("flags", "allowed"),
     [
-        ("", "AVX2"),
         ("--xla_force_host_platform_device_count=1", "AVX2"),
-        (f"{ISA_FLAG}=AVX", "AVX"),
+        pytest.param("", "AVX2", marks=pytest.mark.slow),
+        pytest.param(f"{ISA_FLAG}=AVX", "AVX", marks=pytest.mark.slow),
     ],
 )
 def test_a_run_is_limited_to_avx2_unless_the_user_chose_otherwise(

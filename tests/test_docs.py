@@ -1,5 +1,6 @@
-"""README and docs: every command and block of code is run in order, as a reader would run it."""
+"""README and docs: commands and blocks of code are run in order, as a reader would run them."""
 
+import ast
 import os
 import re
 import runpy
@@ -8,7 +9,6 @@ import subprocess
 import sys
 from importlib import import_module
 from pathlib import Path
-from typing import Any
 
 import duckdb
 import pytest
@@ -38,18 +38,18 @@ def name(page: Path) -> str:
     return page.relative_to(HERE).as_posix()
 
 
-def with_blocks() -> list[Any]:
-    """Return the pages that have blocks; those that live the longest runs are slow.
-
-    `tests/test_recipes.py` follows the pages in RECIPES.
-    """
-    slow = ("tutorial", "experiments", "gymnax", "one-run", "report", "selection")
-    marks = dict.fromkeys(slow, pytest.mark.slow)
-    return [
-        pytest.param(page, id=name(page), marks=marks.get(page.stem, ()))
-        for page in PAGES
-        if blocks(page) and page.stem not in RECIPES
-    ]
+SHOWN = ("README", "phylogeny", "revive", "install", "settings")
+"""Pages that are followed to the letter in `make test`: they live in one law. Others are slow."""
+WITH_BLOCKS = [
+    pytest.param(page, id=name(page), marks=pytest.mark.slow if page.stem == "gymnax" else ())
+    for page in PAGES
+    if blocks(page)
+]
+FOLLOWED = [
+    pytest.param(page, id=name(page), marks=() if page.stem in SHOWN else pytest.mark.slow)
+    for page in PAGES
+    if blocks(page) and page.stem not in RECIPES  # `tests/test_recipes.py` follows those
+]
 
 
 def environment() -> dict[str, str]:
@@ -93,27 +93,47 @@ def try_out(kind: str, text: str, where: Path) -> None:
             load(str(file))
 
 
-@pytest.mark.parametrize("page", with_blocks())
-def test_every_command_and_block_of_a_page_works(
-    page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Commands and Python run in this process, for speed. A page's habitats are in the current folder."""
+@pytest.fixture(autouse=True)
+def _where_a_page_is_followed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A page's own parts are in the current folder."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(str(tmp_path))
+
+
+@pytest.mark.parametrize("page", WITH_BLOCKS)
+def test_every_command_and_block_of_a_page_is_well_formed(page: Path, tmp_path: Path) -> None:
+    """Nothing is lived, so that this tells within a second of a flag, setting or name that is gone."""
     for kind, text in blocks(page):
-        assert kind in {"sh", "python", "toml", "text", "r", "sql"}, (
-            f"{page}: what is a block of {kind}?"
-        )
+        assert kind in {"sh", "python", "toml", "text", "r", "sql"}, f"a block of {kind}?"
+        if named := FILE.match(text):
+            (tmp_path / named[1]).write_text(text, encoding="utf-8")
+        if kind == "sh":
+            for line in text.splitlines():
+                program, *words = shlex.split(line, comments=True) or [""]
+                assert program in ("primordia", "make", ""), line
+                if program == "primordia":
+                    commands.well_formed(*words)
+        elif kind == "python":
+            assert_names_exist(text)
+        elif kind == "toml":
+            try_out(kind, text, tmp_path)
+
+
+def assert_names_exist(program: str) -> None:
+    """Assert that what a program imports from the package is there."""
+    for node in ast.walk(ast.parse(program)):
+        if isinstance(node, ast.ImportFrom) and str(node.module).startswith("primordia"):
+            module = import_module(str(node.module))
+            for each in node.names:
+                if not hasattr(module, each.name):
+                    import_module(f"{node.module}.{each.name}")
+
+
+@pytest.mark.parametrize("page", FOLLOWED)
+def test_every_command_and_block_of_a_page_works(page: Path, tmp_path: Path) -> None:
+    """Commands and Python run in this process, for speed."""
+    for kind, text in blocks(page):
         try_out(kind, text, tmp_path)
-
-
-def test_figures_of_pages_are_those_of_the_tables(monkeypatch: pytest.MonkeyPatch) -> None:
-    """`make figures` fills them in."""
-    monkeypatch.syspath_prepend(str(TEMPLATES))
-    fill = import_module("fill")
-
-    for page, text in fill.pages().items():
-        assert page.read_text(encoding="utf-8") == text, f"{name(page)} differs; run `make figures`"
 
 
 def test_links_of_pages_lead_to_files_that_exist() -> None:

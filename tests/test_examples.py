@@ -16,79 +16,72 @@ from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs.archive import Archive
 from primordia.testing import check_brain, check_habitat, check_mutation
 from tests.commands import here
-from tests.history.test_lineage import assert_rebuilt, living
+from tests.history.test_lineage import assert_rebuilt
 
 TASK = "CartPole-survival"
-LIVELY: dict[str, Any] = {"replication": 0.3, "hazard": 0.03, "cells": 16}
+SEASON = '{kind = "schedule", setting = "mutation.scale", at = 150, value = 0.02}'
+PARTS: dict[str, Any] = {
+    "habitat.name": "examples.habitat:Pasture",
+    "habitat.reach": 0.2,
+    "brain.kind": "examples.brain:Leaky",
+    "brain.neurons": 6,
+    "mutation.kind": "examples.mutation:SelfAdaptive",
+    "mutation.stride": 3,
+    "mutation.founder_scale": 0.5,
+    "metabolism.store": 100.0,
+    "metabolism.gain": 50.0,
+    "cells": 16,
+    "seeds": 2,
+    "replication": 0.1,
+    "hazard": 0.01,
+    "seasons": f"[{SEASON}]",
+}
+"""A world of these parts together."""
 
 
-def test_they_keep_their_contracts() -> None:
-    check_brain(Leaky(neurons=5))
-    check_habitat(Pasture())
-    check_mutation(SelfAdaptive())
+@pytest.mark.slow
+@pytest.mark.parametrize("part", ["brain", "habitat", "mutation"])
+def test_they_keep_their_contracts(part: str) -> None:
+    checks = {
+        "brain": lambda: check_brain(Leaky(neurons=5)),
+        "habitat": lambda: check_habitat(Pasture()),
+        "mutation": lambda: check_mutation(SelfAdaptive()),
+    }
+    checks[part]()
 
 
-def flags(settings: dict[str, Any]) -> list[str]:
-    return [word for name, value in settings.items() for word in (f"--{name}", str(value))]
-
-
-def test_a_brain_lives_and_a_life_is_lived_again(tmp_path: Path) -> None:
-    own = {"brain.kind": "examples.brain:Leaky", "brain.neurons": 6}
-    done = here(
-        "run", TASK, *flags({**own, **LIVELY}), "--ticks", 300, "--quiet", "--out", tmp_path / "run"
-    )
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Archive:
+    """Live in the world of all parts."""
+    out = tmp_path_factory.mktemp("examples") / "run"
+    flags = [word for name, value in PARTS.items() for word in (f"--{name}", value)]
+    done = here("run", TASK, *flags, "--ticks", 1000, "--until", "none", "--quiet", "--out", out)
     assert (done.returncode, done.stderr) == (0, "")
-    run = Archive(tmp_path / "run")
+    return Archive(out)
+
+
+def test_a_life_of_an_own_brain_is_lived_again(run: Archive) -> None:
+    """The longest life; it raises Trouble if it ends otherwise than recorded."""
     assert run.config.brain == {"kind": "examples.brain:Leaky", "neurons": 6}
     assert run.law.heredity.layout.names == ["input", "recurrent", "keep", "output"]
-    assert_rebuilt(run.path)
-    lived_again(run)
-
-
-def lived_again(run: Archive) -> None:
-    """The longest life; it raises Trouble if it ends otherwise than recorded."""
     row = run.lives.oldest()
     life = RelivedLife.of(run, int(run.lives.id[row]), int(run.lives.world[row]))
     ticks = sum(len(stretch.tick) for stretch in life.stretches())
     assert ticks == run.lives.lifespan[row] > 10
 
 
-def test_a_habitat_feeds_and_is_drawn(tmp_path: Path) -> None:
-    habitat = {"habitat.name": "examples.habitat:Pasture", "habitat.reach": 0.2}
-    fed = {"metabolism.store": 100.0, "metabolism.gain": 50.0, "mutation.founder_scale": 0.5}
-    words = flags({**habitat, **fed, **LIVELY, "replication": 0.05})
-    done = here("run", TASK, *words, "--ticks", 2000, "--quiet", "--out", tmp_path / "run")
-    assert (done.returncode, done.stderr) == (0, "")
-    run = Archive(tmp_path / "run")
+def test_an_own_habitat_feeds_and_is_drawn(run: Archive, tmp_path: Path) -> None:
     deaths = run.table("deaths")
     assert {"fatal", "starved"} <= set(deaths["cause"].to_pylist())
     assert max(deaths["food"].to_pylist()) >= 1
-    lived_again(run)
     seen = here("replay", run.path, "--to", 5, "--out", tmp_path / "life.gif")
     assert (seen.returncode, seen.stderr) == (0, "")
     assert (tmp_path / "life.gif").stat().st_size > 1000
 
 
-@pytest.fixture(scope="module")
-def adaptive(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A run whose organisms inherit how much they mutate."""
-    out = tmp_path_factory.mktemp("adaptive") / "run"
-    season = {"kind": "schedule", "setting": "mutation.scale", "at": 150, "value": 0.02}
-    primordia.run(
-        TASK,
-        out,
-        mutation={"kind": "examples.mutation:SelfAdaptive", "stride": 3},
-        seasons=[season],
-        seeds=2,
-        stop={"ticks": 400},
-        **LIVELY,
-    )
-    return out
-
-
-def test_what_is_inherited_is_on_record(adaptive: Path) -> None:
+def test_what_an_own_mutation_lets_inherit_is_on_record(run: Archive) -> None:
     """Copies have their parent's exponent; mutants are up to a stride away; founders have none."""
-    births = primordia.load(adaptive).table("births").to_pylist()
+    births = run.table("births").to_pylist()
     exponent = {(each["world"], each["id"]): each["octaves8"] for each in births}
     assert {cause for each in births if (cause := each["cause"])} == {"founder", "copy", "mutant"}
     for each in births:
@@ -102,29 +95,24 @@ def test_what_is_inherited_is_on_record(adaptive: Path) -> None:
     assert max(exponent.values()) > 5
 
 
-def test_genomes_come_back_from_records(adaptive: Path) -> None:
-    assert_rebuilt(adaptive)
+def test_genomes_come_back_from_records(run: Archive) -> None:
+    assert_rebuilt(run.path)
 
 
-def test_genomes_come_back_across_a_fork_and_it_is_verified(adaptive: Path, tmp_path: Path) -> None:
-    run = primordia.load(adaptive)
-    assert run.verify() == []
-    fork = run.fork(200, tmp_path / "fork", seed=9, stop={"ticks": 500})
+def test_genomes_come_back_across_a_fork_and_it_is_verified(run: Archive, tmp_path: Path) -> None:
+    original = primordia.load(run.path)
+    assert original.verify() == []
+    fork = original.fork(200, tmp_path / "fork", seed=9, stop={"ticks": 500})
     assert fork.verify() == []
     assert_rebuilt(fork.path)
-    inherited = Archive(fork.path)
-    assert inherited.origin is not None
-    births = fork.table("births").to_pylist()
-    at_fork = {(b["world"], b["id"]): b["octaves8"] for b in births if b["tick"] <= 200}
-    original = {
-        (b["world"], b["id"]): b["octaves8"]
-        for b in run.table("births").to_pylist()
-        if b["tick"] <= 200
-    }
-    assert at_fork.items() <= original.items()
-    assert set(at_fork.values()) != {0}
-    now = {(world, number) for world, number, _ in living(fork.path)}
-    assert len(now) > 5
+    assert Archive(fork.path).origin is not None
+    before, after = (
+        {(b["world"], b["id"]): b["octaves8"] for b in each.table("births").to_pylist()
+         if b["tick"] <= 200}
+        for each in (original, fork)
+    )  # fmt: skip
+    assert after.items() <= before.items()
+    assert set(after.values()) != {0}
 
 
 def test_the_table_of_factors_is_of_eighths_of_octaves() -> None:
@@ -154,6 +142,7 @@ def test_help_shows_the_settings_of_a_part_that_is_named(words: list[str], shown
     assert shown in " ".join(done.stdout.split())
 
 
+@pytest.mark.slow
 def test_a_network_is_trained_in_a_world_of_ours() -> None:
     """After two improvements it still acts, and it has changed."""
     pytest.importorskip("optax")

@@ -3,12 +3,15 @@
 import re
 import tomllib
 from collections.abc import Iterator
+from functools import cache
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 import pytest
+
+from primordia import config
 
 HERE = Path(__file__).parent.parent
 TEMPLATES = HERE / "docs" / "templates"
@@ -50,11 +53,21 @@ KNOWN = {
 """Figures that are typed by hand, each with its reason."""
 
 
-@pytest.fixture
-def fill(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+@pytest.fixture(scope="module", name="fill")
+def _fill() -> Iterator[ModuleType]:
     """The script that fills templates."""
-    monkeypatch.syspath_prepend(str(TEMPLATES))
-    return import_module("fill")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(str(TEMPLATES))
+        yield import_module("fill")
+
+
+@pytest.fixture(scope="module")
+def filled(fill: ModuleType) -> dict[Path, str]:
+    """All pages, filled anew; for speed each task's settings are read once."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(config, "load", cache(config.load))
+        pages: dict[Path, str] = fill.pages()
+    return pages
 
 
 def numbers(values: Any) -> Iterator[float]:
@@ -125,8 +138,16 @@ def test_each_reason_for_a_typed_figure_is_still_needed() -> None:
     assert KNOWN.keys() <= set(typed(every, settings()))
 
 
-def test_a_page_says_which_experiments_were_lived_on_the_first_seeds(fill: ModuleType) -> None:
-    for page, text in fill.pages().items():
+def test_figures_of_pages_are_those_of_the_tables(filled: dict[Path, str]) -> None:
+    """`make figures` fills them in."""
+    for page, text in filled.items():
+        assert page.read_text(encoding="utf-8") == text, f"{page} differs; run `make figures`"
+
+
+def test_a_page_says_which_experiments_were_lived_on_the_first_seeds(
+    fill: ModuleType, filled: dict[Path, str]
+) -> None:
+    for page, text in filled.items():
         for block in text.split("\n\n"):
             for folder, name in re.findall(r"\]\([./]*experiments/(\w+)/([\w-]+)\.toml\)", block):
                 if not fill.unseen(f"{folder}/{name}"):

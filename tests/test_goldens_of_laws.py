@@ -7,10 +7,9 @@ import pytest
 from tests.goldens import others, placements
 from tests.test_goldens import assert_lives_as_it_did, marked
 
-SHOWN = {"blind-torus4-founder", "blind-torus8", "empty-only-ring", "empty-only-well-mixed-saturated",
-         "replacing-well-mixed-worlds", "schedules", "ratchets-blocks", "ancestors",
-         "host-cartpole-clocked"}  # fmt: skip
-"""Laws with each rule, each topology, each kind of season, ancestors, and a habitat on the host."""
+SHOWN = {"host-ancestors-founder-well-mixed", "seasons-blocks-torus8-worlds"}
+"""Laws that have together two rules, both kinds of season, blocks, ancestors, children without heredity
+and a habitat on the host. Tasks have the third rule."""
 
 
 @pytest.mark.parametrize("name", marked([*placements(), *others()], SHOWN))

@@ -12,7 +12,7 @@ from primordia.api import notebook
 from primordia.errors import Trouble
 from primordia.experiments.status import ArmStatus, CampaignStatus
 from primordia.runs import loop
-from tests.worlds import config
+from tests.worlds import CLOCKWORK, config
 
 SCRIPT = "<script>alert(1)</script>&amp;\"'"
 
@@ -47,12 +47,10 @@ def shown(part: Any) -> Parts:
 
 
 def test_a_run_is_a_table_of_its_worlds(tmp_path: Path) -> None:
-    settings = {"task": SCRIPT, "cells": 8, "seeds": 2, "stop": {"ticks": 300}}
-    habitat = {"name": "cartpole"}
-    loop.start(config({**settings, "habitat": habitat, "saturation_ticks": 100}), tmp_path / "run")
+    loop.start(config({**CLOCKWORK, "task": SCRIPT, "stop": {"ticks": 300}}), tmp_path / "run")
     run = primordia.load(tmp_path / "run")
     parts = shown(run)
-    assert parts.texts[0] == f"{SCRIPT}: 2 worlds of 8 cells"
+    assert parts.texts[0] == f"{SCRIPT}: 2 worlds of 16 cells"
     assert parts.elements.count("tr") == 1 + 2
     rows = [parts.texts[1:][i : i + 8] for i in range(0, 8 * 3, 8)]
     worlds = run.info()["worlds"]

@@ -1,13 +1,28 @@
 """How to write a brain, a habitat, a mutation and a figure: each page is followed by the letter."""
 
+from collections.abc import Iterator
 from pathlib import Path
 
+import matplotlib.pyplot as plt
 import pytest
 
 from tests.test_docs import HERE, RECIPES, blocks, try_out
 
+SHOWN = {"figure"}
+"""The one that lives in a law of other pages. `tests/test_examples.py` lives in parts of other kinds."""
 
-@pytest.mark.parametrize("part", RECIPES)
+
+@pytest.fixture(autouse=True)
+def _no_figure_is_left_open() -> Iterator[None]:
+    """A notebook that another test executes in this process would show it."""
+    yield
+    plt.close("all")
+
+
+@pytest.mark.parametrize(
+    "part",
+    [pytest.param(part, marks=() if part in SHOWN else pytest.mark.slow) for part in RECIPES],
+)
 def test_a_recipe_takes_one_file(
     part: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -138,6 +138,6 @@ def test_constants_and_divisions_are_computed_as_they_are_written(compute: Any) 
     """Without the cure each has other bits than NumPy's, at least with JAX 0.10.2."""
     numbers = np.random.default_rng(0).normal(size=(3, 1000)).astype(np.float32)
     compiled = jit(compute)
-    for count in (1, 2, 3, 7, 8, 31, 1000):
+    for count in (1, 3, 8, 31, 1000):
         given = numbers[:, :count]
         np.testing.assert_array_equal(compiled(*given), compute(*given))

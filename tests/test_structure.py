@@ -1,11 +1,10 @@
 """Layout of the source: imports point one way, files are short, and nothing read is executed."""
 
 import ast
-from collections.abc import Iterable
+from collections.abc import Iterator
+from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
-
-import pytest
 
 SOURCE = Path(__file__).parent.parent / "src" / "primordia"
 
@@ -44,19 +43,16 @@ FILES = {
 MODULES = [name for name in FILES if name != "__init__"]
 
 
+@cache
 def tree(module: str) -> ast.Module:
     return ast.parse(FILES[module].read_text(encoding="utf-8"))
 
 
+@cache
 def imports(module: str) -> set[str]:
     """Return the modules of the package that this one imports, in any place."""
-    return among(ast.walk(tree(module)), module)
-
-
-def among(nodes: Iterable[ast.AST], module: str) -> set[str]:
-    """Return the modules of the package that these parts of a module import."""
     imported = set()
-    for node in nodes:
+    for node in ast.walk(tree(module)):
         if isinstance(node, ast.Import):
             imported |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
@@ -66,12 +62,11 @@ def among(nodes: Iterable[ast.AST], module: str) -> set[str]:
     return {name if name in FILES else name.rpartition(".")[0] for name in ours}
 
 
-@pytest.mark.parametrize("module", MODULES)
-def test_imports_point_one_way(module: str) -> None:
-    here = module.partition(".")[0]
-    others = {imported.partition(".")[0] for imported in imports(module)} - {here}
-    for other in others:
-        assert LAYER[other] < LAYER[here], f"{module} imports {other}"
+def test_imports_point_one_way() -> None:
+    for module in MODULES:
+        here = module.partition(".")[0]
+        for other in {imported.partition(".")[0] for imported in imports(module)} - {here}:
+            assert LAYER[other] < LAYER[here], f"{module} imports {other}"
 
 
 def test_imports_have_no_cycle() -> None:
@@ -92,43 +87,54 @@ FORBIDDEN_CALLS = {"eval", "exec", "compile", "__import__"}
 FORBIDDEN_ATTRIBUTES = {("np", "random"), ("numpy", "random"), ("jax", "random")}
 
 
-@pytest.mark.parametrize("module", FILES)
-def test_no_module_uses_pickle_eval_or_other_randomness(module: str) -> None:
-    for node in ast.walk(tree(module)):
-        if isinstance(node, ast.Import):
-            assert not {alias.name.partition(".")[0] for alias in node.names} & FORBIDDEN_MODULES
-            assert not any(alias.name.endswith(".random") for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            assert node.module not in FORBIDDEN_MODULES
-            assert not {alias.name for alias in node.names} & {"random"}
-            assert node.module not in {"numpy.random", "jax.random"}
-        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
-            assert node.func.id not in FORBIDDEN_CALLS
-        elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
-            assert (node.value.id, node.attr) not in FORBIDDEN_ATTRIBUTES
-        elif isinstance(node, ast.keyword) and node.arg == "allow_pickle":
-            assert isinstance(node.value, ast.Constant)
-            assert node.value.value is False
+def is_forbidden(node: ast.AST) -> bool:
+    """Return whether a part of a module uses pickle, eval, or other randomness than ours."""
+    match node:
+        case ast.Import(names=names):
+            words = {alias.name.partition(".")[0] for alias in names}
+            return bool(words & FORBIDDEN_MODULES) or any(
+                alias.name.endswith(".random") for alias in names
+            )
+        case ast.ImportFrom(module=module, names=names):
+            taken = {alias.name for alias in names}
+            return module in FORBIDDEN_MODULES | {"numpy.random", "jax.random"} or "random" in taken
+        case ast.Call(func=ast.Name(id=name)):
+            return name in FORBIDDEN_CALLS
+        case ast.Attribute(value=ast.Name(id=owner), attr=attribute):
+            return (owner, attribute) in FORBIDDEN_ATTRIBUTES
+        case ast.keyword(arg="allow_pickle", value=value):
+            return ast.unparse(value) != "False"
+    return False
 
 
-@pytest.mark.parametrize("module", FILES)
-def test_texts_are_read_and_written_in_utf_8(module: str) -> None:
-    """Without an encoding, Python takes that of the user's locale."""
-    calls = (node for node in ast.walk(tree(module)) if isinstance(node, ast.Call))
-    for call in calls:
-        name = ast.unparse(call.func)
-        if name.endswith((".read_text", ".write_text")) and name != WRITER:
-            assert "encoding" in {each.arg for each in call.keywords}, ast.unparse(call)
+def parts() -> Iterator[tuple[str, ast.AST]]:
+    """Yield each part of each module, and before it the name of the module."""
+    for module in FILES:
+        for node in ast.walk(tree(module)):
+            yield module, node
+
+
+def test_no_module_uses_pickle_eval_or_other_randomness() -> None:
+    assert not [(module, ast.unparse(node)) for module, node in parts() if is_forbidden(node)]
 
 
 WRITER = "files.write_text"
 """The function that writes all texts; it takes no encoding."""
 
 
-@pytest.mark.parametrize("module", FILES)
-def test_files_are_short_and_begin_with_a_docstring(module: str) -> None:
-    assert len(FILES[module].read_text(encoding="utf-8").splitlines()) < 350
-    assert ast.get_docstring(tree(module))
+def test_texts_are_read_and_written_in_utf_8() -> None:
+    """Without an encoding, Python takes that of the user's locale."""
+    for module, node in parts():
+        if isinstance(node, ast.Call) and not isinstance(node.func, ast.Name):
+            name = ast.unparse(node.func)
+            if name.endswith((".read_text", ".write_text")) and name != WRITER:
+                assert "encoding" in {each.arg for each in node.keywords}, f"{module}: {name}"
+
+
+def test_files_are_short_and_begin_with_a_docstring() -> None:
+    for module, path in FILES.items():
+        assert len(path.read_text(encoding="utf-8").splitlines()) < 350, module
+        assert ast.get_docstring(tree(module)), module
 
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
@@ -136,10 +142,9 @@ LONGEST = 40
 """The most lines of a function, without its docstring."""
 
 
-@pytest.mark.parametrize("module", FILES)
-def test_functions_are_short(module: str) -> None:
-    functions = [node for node in ast.walk(tree(module)) if isinstance(node, Function)]
-    assert not [each.name for each in functions if length(each) > LONGEST]
+def test_functions_are_short() -> None:
+    functions = [(module, node) for module, node in parts() if isinstance(node, Function)]
+    assert not [f"{module}.{each.name}" for module, each in functions if length(each) > LONGEST]
 
 
 def length(function: Function) -> int:

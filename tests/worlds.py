@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import jax.numpy as jnp
 import numpy as np
 
 from primordia.config import Config, load, validated
@@ -41,6 +42,31 @@ CLOCKWORK: dict[str, Any] = {
 }
 """A task in which no random draw matters: all cells are filled, all starve in tick 31, and so on."""
 
+HERD: dict[str, Any] = {
+    **MEADOW,
+    "habitat": {"name": "tests.toys:Meadow", "lifespan": 90},
+    "brain": {"hidden": 1},
+    "placement": {"topology": "torus8"},
+    "cells": 24,
+    "seeds": 3,
+    "replication": 0.05,
+    "hazard": 0.01,
+    "metabolism": {"store": 400.0},
+    "sample_every": 10,
+}
+"""Three small worlds with births, copies and deaths of several causes, for tests of what is recorded."""
+
+RING: dict[str, Any] = {
+    **MEADOW,
+    "brain": {"hidden": 1},
+    "cells": 12,
+    "seeds": 4,
+    "replication": 0.05,
+    "hazard": 0.002,
+    "saturation_ticks": 40,
+}
+"""Four small worlds without energy, in which all deaths are accidents, for tests of chances."""
+
 
 def config(base: str | dict[str, Any] = "CartPole-survival", **settings: Any) -> Config:
     """Return the settings of a task, given by name or as values, with some of them changed."""
@@ -67,7 +93,7 @@ class Lived:
         **stop: Any,
     ) -> None:
         """`start`: the counts of ticks and births that the run starts at."""
-        self.config, self.engine = config, Engine(config)
+        self.config, self.engine, self.start = config, Engine(config), start
         if any(start):
             self.engine.state = self.engine.chunks.begin(config.world_seeds, *start)
         self.recorder = recorder_for(self.engine, None)
@@ -84,6 +110,15 @@ class Lived:
             self.recorder.append(events)
             for name, table in zip(self.rows, events, strict=True):
                 self.rows[name].append(np.asarray(table.rows)[: int(table.filled)].copy())
+
+    def change(self, settings: dict[str, float]) -> None:
+        """Change settings of all worlds from now on, as seasons do; this compiles nothing."""
+        world, bodies = self.engine.state
+        count = self.config.seeds
+        new = {name: jnp.full(count, value, jnp.float32) for name, value in settings.items()}
+        assert new.keys() <= world.worlds.climate.keys()
+        worlds = world.worlds._replace(climate=world.worlds.climate | new)
+        self.engine.state = type(self.engine.state)(world._replace(worlds=worlds), bodies)
 
     def table(self, name: str) -> dict[str, np.ndarray]:
         """Return the columns of a table as NumPy arrays."""

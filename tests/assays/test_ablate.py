@@ -66,6 +66,7 @@ def test_no_loss_takes_more_than_it_says(subjects: Subjects) -> None:
         assert (senses == [loss.name in ("senses", each) for each in single]).all()
 
 
+@pytest.mark.slow
 def test_where_nothing_matters_nothing_is_needed(tmp_path: Path) -> None:
     settings = {**MEADOW, "habitat": {**MEADOW["habitat"], "lifespan": 30}}
     loop.start(config(settings, brain={"hidden": 3}, stop={"ticks": 200}), tmp_path / "run")

@@ -146,6 +146,7 @@ def test_shares_have_their_bounds() -> None:
     assert replace(found, lifespan=0.5).longer == 1
 
 
+@pytest.mark.slow
 def test_notes_are_the_parents(tmp_path: Path) -> None:
     """A heritable scale is the parent's, so late mutants of different organisms differ in size."""
     settings = {"kind": "heritable", "probability": 1.0, "scale": 0.1, "founder_scale": 0.1}

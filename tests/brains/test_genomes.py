@@ -46,7 +46,7 @@ def test_founders_take_ancestors_in_turn(seed: int, number: int, count: int) -> 
     assert int(modulo(wide(seed) + wide(number), count)) == (seed + number) % 2**64 % count
 
 
-@pytest.mark.parametrize("inheritance", ["parent", "founder"])
+@pytest.mark.parametrize("inheritance", ["parent", pytest.param("founder", marks=pytest.mark.slow)])
 def test_founders_of_a_run_have_the_genomes_of_its_ancestors(
     tmp_path: Path, inheritance: str
 ) -> None:
@@ -71,6 +71,7 @@ def test_founders_of_a_run_have_the_genomes_of_its_ancestors(
     ]
 
 
+@pytest.mark.slow
 def test_genomes_that_descend_from_ancestors_are_rebuilt_by_the_same_code(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:

@@ -11,10 +11,21 @@ from tests.brains.test_contract import TABLES
 from tests.history.test_lineage import assert_rebuilt
 from tests.worlds import CLOCKWORK, MILL, Lived, config
 
+EVERY = pytest.mark.parametrize(
+    "name",
+    [
+        "gated, biases",
+        *(
+            pytest.param(name, marks=pytest.mark.slow)
+            for name in ("recurrent, biases", "linear", "not ours")
+        ),
+    ],
+)
+"""Brains of different kinds; the gated one, which has every part, stands for all in the quick tests."""
 LIVING: dict[str, Any] = {"replication": 0.3, "hazard": 0.03, "metabolism": None, "seasons": []}
 
 
-@pytest.mark.parametrize("name", ["recurrent, biases", "gated, biases", "linear", "not ours"])
+@EVERY
 def test_organisms_with_the_brain_live_and_evolve_and_are_rebuilt(
     name: str, tmp_path: Path
 ) -> None:
@@ -23,7 +34,8 @@ def test_organisms_with_the_brain_live_and_evolve_and_are_rebuilt(
     assert_rebuilt(tmp_path / "run")
 
 
-@pytest.mark.parametrize("name", ["gated, biases", "not ours"])
+@pytest.mark.slow
+@EVERY
 def test_organisms_live_the_same_in_a_jax_habitat_and_on_the_host(name: str) -> None:
     values = {**MILL, **LIVING, "brain": TABLES[name], "seeds": 2}
     mirror = {**values, "habitat": {"name": "tests.toys:Mirror", "inner": "mill"}}
@@ -35,7 +47,7 @@ def test_organisms_live_the_same_in_a_jax_habitat_and_on_the_host(name: str) -> 
     assert len(one.table("births")["id"]) > 100
 
 
-@pytest.mark.parametrize("name", ["gated, biases", "not ours"])
+@EVERY
 def test_memory_is_zero_at_birth(name: str) -> None:
     """In CLOCKWORK all organisms starve in tick 31, and then every cell is filled again."""
     lived = Lived(config({**CLOCKWORK, "brain": TABLES[name]}), 30)

@@ -82,9 +82,11 @@ def test_a_command_whose_reader_has_gone_ends_silently(
     assert (done.returncode, done.stdout, done.stderr) == (1, "", "")
 
 
-def test_commands_are_listed_in_the_order_of_work() -> None:
-    """A run is begun before it is drawn, so `run` is before `plot`."""
-    listed = here("--help").stdout.partition("Commands:")[2]
-    names = re.findall(r"^  (\w+)", listed, re.MULTILINE)
-    assert names[:6] == ["run", "resume", "fork", "new", "check", "experiment"]
-    assert names.index("plot") < names.index("film") < names.index("bundle") < names.index("assay")
+def test_every_command_is_listed_once_under_a_heading() -> None:
+    names = [name for group in commands.GROUPS.values() for name in group]
+    assert set(names) == {each.name for part in commands.PARTS for each in part.COMMANDS}
+    assert len(names) == len(set(names))
+    listed = here("--help").stdout
+    for heading, group in commands.GROUPS.items():
+        part = listed.partition(f"\n{heading}:\n")[2].partition("\n\n")[0]
+        assert re.findall(r"^  ([a-z]+) +[A-Z]", part, re.MULTILINE) == list(group)

@@ -9,16 +9,16 @@ import pytest
 from primordia import interrupts
 from tests.commands import complains, here
 from tests.toys import Meadow
-from tests.trouble import SMALL
+from tests.worlds import HERD, config
 
 
 def test_a_replay_is_recommended_where_the_habitat_draws_pictures(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     run = tmp_path / "run"
-    meadow = ("--habitat", '{name = "tests.toys:Meadow"}', "--brain.hidden", 1)
-    words = [word for word in SMALL if word != "--quiet"]
-    lines = here("run", *words, *meadow, "--ticks", 2, "--out", run).stdout.splitlines()
+    file = tmp_path / "herd.toml"
+    file.write_text(config(HERD).to_toml())
+    lines = here("run", file, "--ticks", 2, "--out", run).stdout.splitlines()
     figures = f"Figures: primordia plot {run}"
     video = f"Video of the champion: primordia replay {run}"
     assert (figures in lines, video in lines) == (True, False)

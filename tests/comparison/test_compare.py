@@ -196,6 +196,7 @@ def test_births_and_ticks_count_from_the_fork(runs: list[Path], tmp_path: Path) 
     assert f"count from tick {AT}, the tick of the fork" in printed
 
 
+@pytest.mark.slow
 def test_single_worlds_are_shown_without_intervals_and_words(tmp_path: Path) -> None:
     for seed in (0, 1):
         loop.start(config({**QUICK, "seeds": 1, "seed": seed}), tmp_path / f"seed{seed}")
@@ -246,6 +247,7 @@ def test_ticks_for_each_death_are_compared_where_saturation_is_rare(
     assert ("pace" in outcomes, "longest" in outcomes) == (with_pace, with_pace)
 
 
+@pytest.mark.slow
 def test_where_few_worlds_saturate_all_are_compared_over_the_same_time(tmp_path: Path) -> None:
     """A longer run is compared over the time that it has in common with a shorter one."""
     never: dict[str, Any] = {**QUICK, "saturation_ticks": 10_000}
@@ -290,6 +292,7 @@ def test_everything_that_is_drawn_is_within_the_page(
             assert drawn.bbox.count_contains([box.min, box.max]) == 2, text
 
 
+@pytest.mark.slow
 def test_food_is_counted_by_ticks_where_a_habitat_has_no_seconds(tmp_path: Path) -> None:
     for name, food in (("much", 0.5), ("little", 0.25)):
         habitat = {**MEADOW["habitat"], "food": food}

@@ -107,6 +107,7 @@ def test_an_interval_leaves_out_its_share_of_resamples_and_not_only_the_last(
     assert enough(0.05) == RESAMPLES
 
 
+@pytest.mark.slow
 def test_intervals_of_four_runs_hold_together() -> None:
     """Uncorrected, at least one of the four fails in more than 7 of 100 experiments."""
     draws, held = np.random.default_rng(0), np.zeros(2)

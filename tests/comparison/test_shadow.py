@@ -61,6 +61,7 @@ def test_nothing_is_found_where_children_inherit_nothing(poles: dict[str, primor
     assert found.ratio_interval[0] < 1 < found.ratio_interval[1]
 
 
+@pytest.mark.slow
 def test_nothing_is_found_where_only_accidents_kill(tmp_path: Path) -> None:
     loop.start(config(MEADOW, hazard=0.05, seeds=5, stop={"ticks": 200}), tmp_path / "run")
     found = primordia.load(tmp_path / "run").shadow(20, 50)

@@ -51,7 +51,10 @@ def busy(habitat: str) -> Config:
     return config(MEADOW, habitat=where, **BUSY, cells=300, seeds=2)
 
 
-@pytest.mark.parametrize(("habitat", "which"), [("Meadow", "births"), ("Mirror", "deaths")])
+@pytest.mark.parametrize(
+    ("habitat", "which"),
+    [("Meadow", "births"), pytest.param("Mirror", "deaths", marks=pytest.mark.slow)],
+)
 def test_lists_with_the_least_room_lose_nothing(habitat: str, which: str) -> None:
     whole, tight = Lived(busy(habitat), 30), Lived(busy(habitat), 1)
     leave_least_room(tight, which)

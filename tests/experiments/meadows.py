@@ -5,7 +5,7 @@ from typing import Any
 
 import tomli_w
 
-from tests.worlds import MEADOW
+from tests.worlds import HERD, MEADOW
 
 SHARED: dict[str, Any] = {
     **MEADOW,
@@ -32,3 +32,9 @@ def write(folder: Path, name: str = "meadows", **changes: Any) -> Path:
     kept = {name: value for name, value in values.items() if value is not None}
     file.write_text(tomli_w.dumps(kept))
     return file
+
+
+def herds(folder: Path, **changes: Any) -> Path:
+    """Write an experiment of two jobs, one for each arm, whose worlds are those of `HERD`."""
+    changes = {"saturation_ticks": None, "jobs": {"worlds": 3}, **changes}
+    return write(folder, **{**HERD, "task": "meadow.toml", "seed": 3, **changes})

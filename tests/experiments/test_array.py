@@ -5,6 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from primordia.experiments.campaign import begin
 from tests import commands
 from tests.experiments.meadows import write
@@ -13,6 +15,7 @@ ROOT = Path(__file__).parent.parent.parent
 SCRIPT = ROOT / "examples" / "array.sh"
 
 
+@pytest.mark.slow
 def test_the_script_of_a_job_array_lives_all_jobs(tmp_path: Path) -> None:
     write(tmp_path, "heredity", arms=[{"name": "all"}], seeds=2, jobs={"worlds": 1})
     here = commands.environment()

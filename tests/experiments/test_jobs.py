@@ -156,6 +156,7 @@ def test_a_process_that_dies_is_replaced_and_its_job_tried_again(
     assert digests_of(begin(out)) == alone
 
 
+@pytest.mark.slow
 def test_a_job_that_fails_stops_no_other_job(tmp_path: Path) -> None:
     file, out = write(tmp_path), tmp_path / "out"
     chosen = begin(file, out)
@@ -215,6 +216,7 @@ def test_the_status_tells_what_is_done_without_opening_a_run(tmp_path: Path) -> 
     assert begin(chosen.path).status().jobs["waiting"] == 2, "a run that was removed is not done"
 
 
+@pytest.mark.slow
 def test_some_arms_are_run_alone(tmp_path: Path) -> None:
     file, out = write(tmp_path), tmp_path / "out"
     done = here("experiment", file, "--out", out, "--only", "harsh", "--jobs", 1)
@@ -285,6 +287,7 @@ def test_each_job_that_might_succeed_is_tried_three_times(tmp_path: Path) -> Non
     ]  # fmt: skip
 
 
+@pytest.mark.slow
 def test_code_of_a_folder_from_elsewhere_is_not_executed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -54,6 +54,7 @@ def test_a_smooth_rise_has_no_sudden_jumps_and_a_step_has_one(jumps: Any) -> Non
     assert sum(each["p of the largest"] <= 0.05 for each in steps) >= 5
 
 
+@pytest.mark.slow
 def test_jumps_of_a_run_are_found_in_each_world(jumps: Any, tmp_path: Path) -> None:
     settings = {**MEADOW, "brain": {"hidden": 1}, "seeds": 2, "hazard": 0.05, "replication": 0.3}
     safer = {"kind": "schedule", "setting": "hazard", "at": 500, "value": 0.005}

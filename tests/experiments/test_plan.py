@@ -184,6 +184,7 @@ def test_a_wrong_request_is_one_clear_line(tmp_path: Path) -> None:
     assert (tmp_path / "full" / "a").exists()
 
 
+@pytest.mark.slow
 def test_runs_whose_seeds_have_a_gap_are_no_arm_to_fork(tmp_path: Path) -> None:
     """The worlds after the gap would go on with other seeds than they had."""
     for seed in (0, 2, 5):
@@ -300,6 +301,7 @@ def test_names_of_arms_differ_by_more_than_case(tmp_path: Path) -> None:
     complains(here("experiment", file), 2, "'mild' cannot name an arm, or names two arms")
 
 
+@pytest.mark.slow
 def test_one_arm_is_lived_and_not_compared(tmp_path: Path) -> None:
     out = tmp_path / "out"
     file = write(tmp_path, arms=[{"name": "mild"}], stop={"ticks": 9})

@@ -33,6 +33,7 @@ def same_as_alone(out: Path) -> None:
         assert digests(out / arm.name) == digests(out.parent / "alone" / arm.name)
 
 
+@pytest.mark.slow
 def test_tasks_of_ray_make_the_same_worlds(tmp_path: Path) -> None:
     out = tmp_path / "out"
     primordia.experiment(write(tmp_path, arms=[{"name": "all"}]), out, ray="")

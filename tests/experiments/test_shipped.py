@@ -180,6 +180,7 @@ def test_a_calibrated_mutation_is_held_against_scales_at_an_equal_share(
     assert worse == "-0.100 (-0.100 to -0.100)"
 
 
+@pytest.mark.slow
 def test_the_csv_holds_the_outcomes_of_each_world(ponged: Path) -> None:
     arms = import_module("named").arms(ponged)
     compared = primordia.compare(*arms)
@@ -194,6 +195,7 @@ def test_the_csv_holds_the_outcomes_of_each_world(ponged: Path) -> None:
     assert float(rows[0]["longest_life"]) == primordia.load(arms[0]).lives().lifespan.max()
 
 
+@pytest.mark.slow
 def test_shadows_are_reported(ponged: Path) -> None:
     shadows = import_module("shadows")
     shadows.report(ponged)
@@ -212,6 +214,7 @@ def test_shadows_are_reported(ponged: Path) -> None:
     assert [float(row["mean_life"]) for row in rows] == means
 
 
+@pytest.mark.slow
 def test_the_share_of_starts_that_a_world_masters_is_counted(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -301,6 +304,7 @@ def test_robots_in_fresh_games_are_reported(
     assert (results / "reaching.md").read_text().count("| arms") == 2
 
 
+@pytest.mark.slow
 def test_deaths_of_the_last_quarter_are_counted(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

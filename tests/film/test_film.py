@@ -41,6 +41,7 @@ def test_a_film_by_ticks_of_a_chosen_organism(poles: primordia.Run, tmp_path: Pa
     assert frames.shape[1:3] == (HEIGHT // 2, WIDTH // 2)
 
 
+@pytest.mark.slow
 def test_a_world_whose_habitat_draws_nothing_is_filmed_alone(tmp_path: Path) -> None:
     loop.start(config({**MEADOW, "stop": {"ticks": 60}}), tmp_path / "run")
     file = primordia.load(tmp_path / "run").film(by="ticks")

@@ -197,7 +197,7 @@ def test_food_of_intervals_shorter_than_a_tick_is_that_of_the_tick() -> None:
 
 
 def test_food_that_no_organism_can_live_on_has_no_break_even(tmp_path: Path) -> None:
-    hungry = {"metabolism": {"store": 30.0, "gain": 0.0}, "seasons": []}
+    hungry = {"metabolism": {"store": 30.0, "gain": 0.0}, "stop": {"ticks": 150}}
     loop.start(config(FED, **hungry), tmp_path / "run")
     assert np.isinf(foraging(Archive(tmp_path / "run")).break_even).all()
     with style.applied():

@@ -103,7 +103,13 @@ def test_genomes_are_rebuilt_over_hundreds_of_generations(deep: Path) -> None:
     assert_rebuilt(deep)
 
 
-@pytest.mark.parametrize("name", WORLDS)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=() if name == "every child a founder" else pytest.mark.slow)
+        for name in WORLDS  # tests/engine/test_strange.py has the other rules in one world
+    ],
+)
 def test_the_genomes_of_all_the_living_are_rebuilt(name: str, tmp_path: Path) -> None:
     values, ticks = WORLDS[name]
     run = tmp_path / "run"
@@ -152,6 +158,7 @@ def test_an_organism_that_never_lived_is_an_error(deep: Path, organism: int, wor
         primordia.Run(deep).rebuild(organism, world)
 
 
+@pytest.mark.slow
 def test_genomes_with_infinite_weights_are_rebuilt(tmp_path: Path) -> None:
     """Organisms with such genomes cannot live, but they were born."""
     run = tmp_path / "run"

@@ -3,17 +3,16 @@
 The five births are written in batches of two, and the last batch is padded.
 """
 
-import jax.numpy as jnp
 import numpy as np
 import pytest
 
 from primordia.law.genesis import begin
 from primordia.law.law import Law
 from primordia.law.world import BirthCause, World
-from primordia.random.keys import Purpose, bits, stream
+from primordia.random.keys import Purpose
 from primordia.random.wide import to_host, wide
 from tests.law.test_placement import one_after_another
-from tests.law.turning import Turned, numbered, turned
+from tests.law.turning import Turned, drawn, numbered, turned
 from tests.worlds import MEADOW, law_of
 
 W, N, TICK = 2, 256, 30
@@ -27,8 +26,7 @@ BRANCHES = [2**32, 3 * 2**32]
 
 def word(purpose: Purpose, world: int, cell: int, index: int = 0) -> int:
     """Return the high word of a draw of a cell."""
-    key = stream(wide(SEEDS[world]), purpose, wide(TICK))
-    return int(bits(key, jnp.uint32(cell), index).hi)
+    return int(drawn(SEEDS[world], purpose, TICK, cell, index).hi)
 
 
 def posed() -> tuple[Law, World]:
@@ -44,13 +42,13 @@ def posed() -> tuple[Law, World]:
         alive[world, cells] = False
     numbers = np.arange(W * N)
     organisms = organisms._replace(
-        alive=jnp.asarray(alive.ravel()),
+        alive=alive.ravel(),
         number=wide(numbers),
         branch=wide(np.repeat(BRANCHES, N)),
         genome=numbered(organisms.genome, numbers),
     )
     chances = {
-        name: jnp.array([0, 1], jnp.float32)
+        name: np.float32([0, 1])
         for name in worlds.climate
         if name.startswith("mutation.") and name.endswith(".probability")
     }
@@ -69,13 +67,8 @@ def after() -> Turned:
 
 def parents_of(world: int) -> dict[int, int]:
     """Return cell of child -> cell of parent. Each round of placement has its own words."""
-    words = np.array(
-        [
-            [to_host(bits(stream(wide(SEEDS[world]), Purpose.PLACE, wide(TICK)), np.arange(N), round_))
-             >> np.uint64(shift) & np.uint64(2**32 - 1) for shift in (32, 0)]
-            for round_ in range(6)
-        ]
-    )  # fmt: skip
+    pairs = [drawn(SEEDS[world], Purpose.PLACE, TICK, np.arange(N), round_) for round_ in range(6)]
+    words = np.array(pairs, np.uint64)
     cells = np.arange(N)
     wants, occupied = np.isin(cells, PARENTS[world]), ~np.isin(cells, EMPTY[world])
     parent = one_after_another("well-mixed", "empty-only", words, wants, occupied)
@@ -103,18 +96,19 @@ def test_mates_and_their_weights_are_drawn_for_each_child(after: Turned) -> None
     """Row r of both blocks is the mate's if the highest bit of the child's word r is set."""
     mates, mixed = set(), 0
     columns = (after.births[name] for name in ("cell", "parent", "mate"))
+    genome = [np.asarray(block) for block in after.organisms.genome.values()]
     for child, parent, mate in zip(*columns, strict=True):
         world, cell = divmod(int(child), N)
         assert mate == world * N + mate_of(world, cell, int(parent) % N)
         mates.add(int(mate) % N)
-        for block in after.organisms.genome.values():
-            rows = np.asarray(block[child]).reshape(block.shape[1], -1)
+        for block in genome:
+            rows = block[child].reshape(block.shape[1], -1)
             for row, weights in enumerate(rows):
                 of_mate = word(Purpose.CROSS, world, cell, row) >> 31
                 assert set(weights.tolist()) == {float(mate if of_mate else parent)}
                 mixed += of_mate
     assert len(mates) == 5
-    assert 0 < mixed < 5 * sum(block.shape[1] for block in after.organisms.genome.values())
+    assert 0 < mixed < 5 * sum(block.shape[1] for block in genome)
 
 
 def test_children_mutate_with_the_chances_of_their_world(after: Turned) -> None:

@@ -107,7 +107,8 @@ def test_neighbours_are_those_of_the_topology(topology: Any, cells: int, near: s
     assert not found[1, cells - 1]
 
 
-@pytest.mark.parametrize("rule", ["blind", "replacing"])
+@pytest.mark.slow
+@pytest.mark.parametrize("rule", ["blind", pytest.param("replacing", marks=pytest.mark.slow)])
 def test_a_child_is_made_of_parent_and_mate_as_they_are_when_it_is_born(rule: str) -> None:
     """Without mutation each weight of a child is its parent's or its mate's."""
     settings = {

@@ -1,15 +1,14 @@
 """One tick of births in occupied cells: replaced organisms, causes of death, and mates."""
 
-import jax.numpy as jnp
 import numpy as np
 import pytest
 
 from primordia.law.genesis import begin
 from primordia.law.world import Cause
-from primordia.random.keys import Purpose, bits, stream
-from primordia.random.wide import to_host, wide
+from primordia.random.keys import Purpose
+from primordia.random.wide import wide
 from tests.law.test_placement import one_after_another
-from tests.law.turning import Turned, numbered, turned
+from tests.law.turning import Turned, drawn, numbered, turned
 from tests.worlds import MEADOW, law_of
 
 N, SEED, TICK = 12, 18, 30
@@ -21,8 +20,7 @@ WANTS = ALIVE & (CAUSES < 0)
 
 def words(purpose: Purpose) -> np.ndarray:
     """Return the high and low words of all cells, (2, N)."""
-    drawn = to_host(bits(stream(wide(SEED), purpose, wide(TICK)), np.arange(N)))
-    return np.array([drawn >> np.uint64(32), drawn & np.uint64(2**32 - 1)])
+    return np.array(drawn(SEED, purpose, TICK, np.arange(N)), np.uint64)
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +32,7 @@ def tick() -> Turned:
     )  # fmt: skip
     world = begin(law, np.array([SEED], np.uint64), tick=TICK)
     organisms = world.organisms._replace(
-        alive=jnp.asarray(ALIVE),
+        alive=ALIVE,
         number=wide(np.arange(N) + 100),
         genome=numbered(world.organisms.genome, np.arange(N)),
     )
@@ -70,12 +68,12 @@ def test_an_organism_that_is_replaced_is_a_parent_but_no_mate(tick: Turned) -> N
     births, overwritten = tick.births, []
     parent = parents()
     survivors = np.flatnonzero(WANTS & (parent < 0)).tolist()
-    high = words(Purpose.MATE)[0]
+    high, genome = words(Purpose.MATE)[0], np.asarray(tick.organisms.genome["output"])
     for row, cell in enumerate(births["cell"].tolist()):
         mates = [c for c in survivors if c != parent[cell]]
         mate = mates[int(high[cell]) * len(mates) >> 32]
         assert births["mate"][row] == mate + 100
-        weights = set(np.ravel(tick.organisms.genome["output"][cell]).tolist())
+        weights = set(np.ravel(genome[cell]).tolist())
         assert weights <= {float(parent[cell]), float(mate)}
         if parent[cell] < cell and parent[parent[cell]] >= 0:
             overwritten.append(float(parent[cell]) in weights)

@@ -4,7 +4,6 @@ from functools import cache
 from typing import Any
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 import pytest
 
@@ -34,13 +33,11 @@ SEASONS: list[dict[str, Any]] = [
 
 
 @cache
-def meadow_law(**values: Any) -> Law:
-    more = {"seasons": SEASONS} if values.pop("seasons", False) else {}
-    moments = values.pop("moments", False)
-    more |= {"mutation": {"kind": "calibrated", "remembered": 4, "every": 16}} if moments else {}
+def meadow_law(moments: bool = False) -> Law:
+    more = {"mutation": {"kind": "calibrated", "remembered": 4, "every": 16}} if moments else {}
     return law_of(
-        MEADOW, cells=N, seeds=W, saturation_ticks=40, sample_every=600, metabolism={"store": 10.0},
-        **more, **values,
+        MEADOW, cells=N, seeds=W, brain={"kind": "linear"}, saturation_ticks=40, sample_every=600,
+        metabolism={"store": 10.0}, seasons=SEASONS, **more,
     )  # fmt: skip
 
 
@@ -49,11 +46,16 @@ def posed(law: Law, tick: int = 500, **worlds: Any) -> World:
     world = begin(law, np.arange(W, dtype=np.uint64), tick=tick)
     known = {"calm": [100] * W, "saturated": wide([7] * W), "saturated_births": wide([3] * W)}
     arrays = {
-        name: value if isinstance(value, tuple) else jnp.asarray(value, jnp.int32)
+        name: value if isinstance(value, tuple) else np.asarray(value, np.int32)
         for name, value in (known | worlds).items()
     }
-    organisms = world.organisms._replace(alive=jnp.ones(W * N, bool))
-    return World(organisms, world.worlds._replace(**arrays))
+    return filled(World(world.organisms, world.worlds._replace(**arrays)))
+
+
+def filled(world: World, empty: Any = ()) -> World:
+    """Return worlds in which all cells but some are occupied."""
+    alive = ~np.isin(np.arange(W * N), empty)
+    return world._replace(organisms=world.organisms._replace(alive=alive))
 
 
 @cache
@@ -62,9 +64,12 @@ def settling(law: Law) -> Any:
     return jax.jit(lambda world, ticks, running: settle(law, world, lists, none, ticks, running))
 
 
+_note_samples = jax.jit(note_samples, static_argnums=0)
+
+
 def settled(law: Law, world: World, ticks: int, running: list[bool]) -> tuple[World, list[dict]]:
     """Settle worlds after quiet ticks; return them, and the samples taken."""
-    after, events, newborn = settling(law)(world, jnp.int32(ticks), jnp.array(running))
+    after, events, newborn = settling(law)(world, np.int32(ticks), np.array(running))
     assert not newborn.any()
     assert int(events.births.filled) == int(events.deaths.filled) == 0
     rows = np.asarray(events.samples.rows)[: int(events.samples.filled)]
@@ -76,17 +81,20 @@ ALL = [True] * W
 
 
 def due(law: Law, world: World, running: list[bool] = ALL) -> int:
-    return int(quiet_ticks(law, world, jnp.array(running)))
+    return int(_due(law, world, np.array(running)))
+
+
+_due = jax.jit(quiet_ticks, static_argnums=0)
 
 
 def test_the_next_settling_is_at_the_first_sample_look_or_schedule_that_is_due() -> None:
     """Samples fall due at 600, looks at 700 and 900, a schedule at 1000."""
-    law = meadow_law(seasons=True)
+    law = meadow_law()
     assert due(law, posed(law)) == 100
     assert due(law, posed(law, sample_wait=[900, 250, 800])) == 200
     late = posed(law, tick=650, sample_wait=[900] * W)
     assert due(law, late) == 50
-    waits = late.worlds.looks._replace(wait=jnp.array([[600, 700], [700, 480], [500, 490]]))
+    waits = late.worlds.looks._replace(wait=np.int32([[600, 700], [700, 480], [500, 490]]))
     assert due(law, late._replace(worlds=late.worlds._replace(looks=waits))) == 350
     nearer = late.worlds._replace(looks=waits, tick=wide([650, 650, 700]))
     assert due(law, late._replace(worlds=nearer)) == 300
@@ -106,8 +114,7 @@ def test_stopped_worlds_settle_nothing_and_worlds_without_life_at_once() -> None
     assert due(law, world) == 10
     assert due(law, world, [False, True, True]) == 20
     assert due(law, world, [False] * 3) == FAR
-    alive = world.organisms.alive.at[N : 2 * N].set(False)
-    empty = world._replace(organisms=world.organisms._replace(alive=alive))
+    empty = filled(world, range(N, 2 * N))
     assert due(law, empty) == 0
     assert due(law, empty, [True, False, True]) == 10
 
@@ -118,16 +125,15 @@ def test_moments_fall_due_at_multiples_in_worlds_that_run() -> None:
     assert due(law, posed(law, tick=512)) == 16
     worlds = posed(law, tick=512).worlds._replace(tick=wide([512, 2**32 + 16, 513]))
     assert until_due(Moments(4, 16), worlds).tolist() == [16, 16, 15]
-    assert moment_due(law, worlds, jnp.array(ALL)).tolist() == [True, True, False]
-    assert moment_due(law, worlds, jnp.array([True, False, True])).tolist() == [True, False, False]
-    assert not moment_due(meadow_law(), worlds, jnp.array(ALL)).any()
+    assert moment_due(law, worlds, np.array(ALL)).tolist() == [True, True, False]
+    assert moment_due(law, worlds, np.array([True, False, True])).tolist() == [True, False, False]
+    assert not moment_due(meadow_law(), worlds, np.array(ALL)).any()
 
 
 def test_quiet_ticks_are_counted_in_the_worlds_that_run() -> None:
-    law = meadow_law(seasons=True)
+    law = meadow_law()
     world = posed(law, tick=500, calm=[1, 2, 3], sample_wait=[90, 80, 70])
-    alive = np.array([1, 1, 1, 1, 1, 0, 0, 0, 1, 1, 0, 0], bool)
-    world = world._replace(organisms=world.organisms._replace(alive=jnp.asarray(alive)))
+    world = filled(world, [5, 6, 7, 10, 11])
     (organisms, worlds), samples = settled(law, world, 30, [True, True, False])
     assert not samples
     assert to_host(worlds.tick).tolist() == [530, 530, 500]
@@ -135,7 +141,7 @@ def test_quiet_ticks_are_counted_in_the_worlds_that_run() -> None:
     assert worlds.calm.tolist() == [31, 32, 3]
     assert worlds.sample_wait.tolist() == [60, 50, 70]
     assert worlds.looks.wait.tolist() == [[170, 370], [170, 370], [200, 400]]
-    np.testing.assert_array_equal(organisms.alive, alive)
+    np.testing.assert_array_equal(organisms.alive, world.organisms.alive)
 
 
 def test_a_full_running_world_is_saturated_once_after_enough_calm_ticks() -> None:
@@ -147,15 +153,24 @@ def test_a_full_running_world_is_saturated_once_after_enough_calm_ticks() -> Non
     _, worlds = settled(law, just, ticks, ALL)[0]
     assert to_host(worlds.saturated).tolist() == [505, NEVER, 505]
     assert to_host(worlds.saturated_births).tolist() == [11, NEVER, 13]
-    alive = just.organisms.alive.at[2 * N + 3].set(False)
-    gap = just._replace(organisms=just.organisms._replace(alive=alive))
-    long = gap.worlds._replace(calm=jnp.full(W, 90, jnp.int32))
-    _, worlds = settled(law, gap._replace(worlds=long), ticks, [False, True, True])[0]
+    long = filled(posed(law, calm=[90] * W, births=births, **fresh), 2 * N + 3)
+    _, worlds = settled(law, long, ticks, [False, True, True])[0]
     assert to_host(worlds.saturated).tolist() == [NEVER, 505, NEVER]
     assert to_host(worlds.saturated_births).tolist() == [NEVER, 12, NEVER]
     _, worlds = settled(law, posed(law, births=births), ticks, ALL)[0]
     assert to_host(worlds.saturated).tolist() == [7] * W
     assert to_host(worlds.saturated_births).tolist() == [3] * W
+
+
+@pytest.mark.parametrize("calm", [0, 100, 2**31 - 101, 2**31 - 100, 2**31 - 2, 2**31 - 1])
+def test_the_count_of_calm_ticks_saturates(calm: int) -> None:
+    """After 2^31 ticks without births and deaths the next settling is still ahead, not behind."""
+    law, running = meadow_law(), [True, True, False]
+    never = wide([NEVER] * W)
+    world = posed(law, tick=0, calm=[calm] * W, sample_wait=[1000] * W, saturated=never)
+    after, _ = settled(law, world, 100, running)
+    assert after.worlds.calm.tolist() == [min(calm + 100, 2**31 - 1)] * 2 + [calm]
+    assert 0 < due(law, after, running) <= 900
 
 
 def test_samples_are_taken_where_they_are_due_and_wait_again() -> None:
@@ -173,8 +188,8 @@ def test_samples_are_taken_where_they_are_due_and_wait_again() -> None:
 
 def test_a_change_of_climate_is_sampled_between_the_periodic_samples() -> None:
     """A world that has stopped at the tick of the schedule changes nothing and is not sampled."""
-    law = meadow_law(seasons=True)
-    looks = posed(law).worlds.looks._replace(wait=jnp.full((W, 2), 99, jnp.int32))
+    law = meadow_law()
+    looks = posed(law).worlds.looks._replace(wait=np.full((W, 2), 99, np.int32))
     world = posed(law, tick=995, sample_wait=[50] * W, looks=looks)
     later = world.worlds._replace(tick=wide([995, 990, 1000]))
     (_, worlds), samples = settled(law, world._replace(worlds=later), 5, [True, True, False])
@@ -201,13 +216,13 @@ def test_a_sample_has_each_count_of_its_own_world() -> None:
     energy = np.arange(cells) * 3 * ONE - 10 * ONE
     born = np.array([880, 0, 890, 899, 0, 0, 0, 900, 5, 100, 850, 1])
     organisms = world.organisms._replace(
-        alive=jnp.asarray(alive), energy=jnp.asarray(energy, jnp.int32), born=wide(born)
+        alive=alive, energy=energy.astype(np.int32), born=wide(born)
     )
-    climate = world.worlds.climate | {"hazard": jnp.array([0.1, 0.2, 0.3], jnp.float32)}
+    climate = world.worlds.climate | {"hazard": np.float32([0.1, 0.2, 0.3])}
     world = World(organisms, world.worlds._replace(climate=climate))
     list_ = log.empty(law).samples
-    before = list_._replace(filled=jnp.int32(2))
-    after = note_samples(law, world, jnp.array([True, False, True]), before)
+    before = list_._replace(filled=np.int32(2))
+    after = _note_samples(law, world, np.array([True, False, True]), before)
     assert int(after.filled) == 4
     rows = log.sample_columns(law.rates).unpacked(np.asarray(after.rows[2:4]))
     assert not np.asarray(after.rows[:2]).any()
@@ -229,8 +244,6 @@ def test_a_sample_has_each_count_of_its_own_world() -> None:
 @pytest.mark.parametrize("population", [0, 1, 4])
 def test_worlds_without_life_are_those_that_run_without_an_organism(population: int) -> None:
     law = meadow_law()
-    world = posed(law)
-    alive = world.organisms.alive.at[:N].set(jnp.arange(N) < population)
-    world = world._replace(organisms=world.organisms._replace(alive=alive))
-    assert lifeless(law, world, jnp.array(ALL)).tolist() == [population == 0, False, False]
-    assert not lifeless(law, world, jnp.array([False, True, True])).any()
+    world = filled(posed(law), range(population, N))
+    assert lifeless(law, world, np.array(ALL)).tolist() == [population == 0, False, False]
+    assert not lifeless(law, world, np.array([False, True, True])).any()

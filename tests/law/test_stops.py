@@ -2,31 +2,17 @@
 
 from typing import Any
 
-import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from primordia.law import events as log
-from primordia.law.genesis import begin
-from primordia.law.population import quiet_ticks, settle
-from primordia.law.tick import no_fates
 from primordia.random.wide import to_host
 from tests.chronicle import History
-from tests.worlds import MEADOW, Lived, config
-
-CALM = {
-    "cells": 12,
-    "seeds": 4,
-    "brain": {"kind": "feed-forward", "hidden": 1},
-    "replication": 0.05,
-    "hazard": 0.002,
-    "saturation_ticks": 40,
-}
+from tests.worlds import RING, Lived, config
 
 
 @pytest.fixture(scope="module")
 def calm() -> list[History]:
-    run = Lived(config(MEADOW, **CALM), 3000)
+    run = Lived(config(RING), 3000)
     return [History(run, world) for world in range(4)]
 
 
@@ -53,7 +39,7 @@ def prefix(table: dict[str, np.ndarray], world: int, last: int) -> dict[str, lis
 def test_each_world_stops_in_the_tick_of_its_limit(
     calm: list[History], stop: dict[str, Any]
 ) -> None:
-    run = Lived(config(MEADOW, **CALM), 3000, **stop)
+    run = Lived(config(RING), 3000, **stop)
     worlds = run.engine.state.world.worlds
     for world, history in enumerate(calm):
         last = history.lives[19].born if "births" in stop else history.saturation()[0]
@@ -67,23 +53,7 @@ def test_each_world_stops_in_the_tick_of_its_limit(
 
 
 def test_a_limit_of_ticks_is_exact() -> None:
-    run = Lived(config(MEADOW, **CALM), 123)
+    run = Lived(config(RING), 123)
     assert to_host(run.engine.state.world.worlds.tick).tolist() == [123] * 4
     run.advance_to(124)
     assert to_host(run.engine.state.world.worlds.tick).tolist() == [124] * 4
-
-
-@pytest.mark.parametrize("calm", [0, 100, 2**31 - 101, 2**31 - 100, 2**31 - 2, 2**31 - 1])
-def test_the_count_of_calm_ticks_saturates(calm: int) -> None:
-    """After 2^31 ticks without births and deaths the next settling is still ahead, not behind."""
-    made = config(MEADOW, **CALM)
-    law, running = made.build_law(made.build_habitat()), jnp.array([True, True, True, False])
-    world = begin(law, made.world_seeds)
-    worlds = world.worlds._replace(calm=jnp.full(4, calm, jnp.int32))
-    world = world._replace(
-        organisms=world.organisms._replace(alive=jnp.ones_like(world.organisms.alive)),
-        worlds=worlds._replace(sample_wait=jnp.full(4, 1000, jnp.int32)),
-    )
-    after, _, _ = settle(law, world, log.empty(law), no_fates(law), jnp.int32(100), running)
-    assert after.worlds.calm.tolist() == [min(calm + 100, 2**31 - 1)] * 3 + [calm]
-    assert 0 < int(quiet_ticks(law, after, running)) <= 900

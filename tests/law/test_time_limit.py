@@ -15,7 +15,7 @@ STILL = {
 }
 
 
-@pytest.mark.parametrize("kind", ["Organ", "OrganOnHost"])
+@pytest.mark.parametrize("kind", ["Organ", pytest.param("OrganOnHost", marks=pytest.mark.slow)])
 @pytest.mark.parametrize(("store", "cause"), [(1000.0, "time-limit"), (6.0, "starved")])
 def test_lives_end_at_the_limit(kind: str, store: float, cause: str) -> None:
     """A store of 6 that drains by 1 is empty in the tick of the limit, and hunger comes first."""

@@ -1,8 +1,8 @@
 """One tick of deaths and births in six invented worlds, with another kind of change in each."""
 
+from functools import cache
 from typing import Any
 
-import jax.numpy as jnp
 import numpy as np
 import pytest
 
@@ -10,9 +10,9 @@ from primordia.law.genesis import begin
 from primordia.law.law import Law
 from primordia.law.metabolism import ONE
 from primordia.law.world import BirthCause, Cause, World
-from primordia.random.keys import Purpose, bits, stream
+from primordia.random.keys import Purpose
 from primordia.random.wide import to_host, wide
-from tests.law.turning import turned
+from tests.law.turning import drawn, numbered, turned
 from tests.worlds import MEADOW, law_of
 
 DYING, FIRST, STOPPED, LOSING, QUIET, BEARING = range(6)
@@ -36,27 +36,32 @@ BEGUN = {
 STORES = [float(10 + world) for world in range(W)]
 
 
-def posed() -> tuple[Law, World]:
-    law = law_of(
+@cache
+def meadow_law() -> Law:
+    return law_of(
         MEADOW, cells=N, seeds=W, metabolism={"store": 10.0}, placement={"rule": "empty-only"},
-        mutation={"probability": 0.0},
+        mutation={"kind": "heritable", "belongs": "cell", "probability": 0.0},
+        recombination={"probability": 1.0}, brain={"hidden": 4},
     )  # fmt: skip
+
+
+def posed() -> tuple[Law, World]:
+    law = meadow_law()
     world = begin(law, np.arange(W, dtype=np.uint64), tick=TICK)
-    store = jnp.array(STORES, jnp.float32)
     worlds = world.worlds._replace(
         **{name: wide(values) for name, values in BEGUN.items()},
-        calm=jnp.full(W, 8, jnp.int32),
+        calm=np.full(W, 8, np.int32),
         deaths=wide(np.full((W, len(Cause)), 5)),
-        climate=world.worlds.climate | {"metabolism.store": store},
+        climate=world.worlds.climate | {"metabolism.store": np.float32(STORES)},
     )
     organisms = world.organisms._replace(
-        alive=jnp.asarray(ALIVE.ravel()),
+        alive=ALIVE.ravel(),
         number=wide(NUMBER),
         branch=wide(BRANCH.ravel()),
         born=wide(np.full(W * N, 40)),
-        energy=jnp.arange(W * N, dtype=jnp.int32) * ONE,
-        eaten=jnp.arange(W * N, dtype=jnp.int32) + 500,
-        memory=jnp.ones_like(world.organisms.memory),
+        energy=np.arange(W * N, dtype=np.int32) * ONE,
+        eaten=np.arange(W * N, dtype=np.int32) + 500,
+        memory=np.ones(world.organisms.memory.shape, np.float32),
     )
     return law, World(organisms, worlds)
 
@@ -69,7 +74,7 @@ def after() -> dict[str, Any]:
     wants[BEARING, 2] = True
     organisms, worlds, newborn, births, deaths = turned(law, world, wants, CAUSES, stopped=STOPPED)
     cells = {"alive": organisms.alive, "energy": organisms.energy, "eaten": organisms.eaten,
-             "newborn": newborn, "memory": organisms.memory.sum(axis=1)}  # fmt: skip
+             "newborn": newborn, "memory": np.asarray(organisms.memory).sum(axis=1)}  # fmt: skip
     wides = {name: to_host(getattr(organisms, name)) for name in ("number", "branch", "born")}
     by_world = {name: np.asarray(v).reshape(W, N) for name, v in (cells | wides).items()}
     return {**by_world, "worlds": worlds, "births": births, "deaths": deaths}
@@ -77,8 +82,7 @@ def after() -> dict[str, Any]:
 
 def founded_cell(world: int) -> int:
     """Return the cell of the founder, which the first word for seed, tick and genesis gives."""
-    key = stream(wide(world), Purpose.GENESIS, wide(TICK))
-    return int(bits(key, jnp.uint32(0)).hi) * N >> 32
+    return int(drawn(world, Purpose.GENESIS, TICK, 0).hi) * N >> 32
 
 
 def child_cell(after: dict[str, Any]) -> int:
@@ -151,3 +155,49 @@ def test_fixation_is_noted_once_and_forgotten_in_an_extinction(after: dict[str, 
     worlds = after["worlds"]
     assert to_host(worlds.fixed).tolist() == [NEVER, NEVER, NEVER, TICK, 30, NEVER]
     assert to_host(worlds.fixed_births).tolist() == [NEVER, NEVER, NEVER, 1003, 901, NEVER]
+
+
+GAP = [2, 3, 2, -1, 0]
+"""The empty cell of each ring but the last; the fourth world has no organism at all."""
+PARENT = [1, 0, 1, -1, 1]
+OTHER = [3, 2, 3, -1, 3]
+"""The other neighbour of the empty cell. In the third world it dies in the tick."""
+
+
+def test_a_mate_is_a_neighbour_in_the_childs_world_that_survives_the_tick() -> None:
+    """All weights of an organism are its number, so a child's weights show which parent each is from.
+
+    A note is minus this number. A note that belongs to a cell is that of the cell's last organism.
+    """
+    law = meadow_law()
+    world = begin(law, np.arange(W, dtype=np.uint64), tick=9)
+    alive, wants, cause = np.ones((W, N), bool), np.zeros((W, N), bool), np.full((W, N), -1)
+    alive[3] = False
+    for w in (0, 1, 2, 4):
+        alive[w, GAP[w]], wants[w, PARENT[w]] = False, True
+    cause[2, 3] = Cause.HAZARD
+    numbers = np.arange(W * N, dtype=np.int32) + 1
+    organisms = world.organisms._replace(
+        alive=alive.ravel(),
+        number=wide(numbers),
+        genome=numbered(world.organisms.genome, numbers),
+        notes=np.broadcast_to(-numbers[:, None], world.organisms.notes.shape),
+    )
+    begun = world.worlds._replace(births=wide([1000] * W))
+    organisms, _, _, births, _ = turned(law, World(organisms, begun), wants, cause)
+    assert len(births["cell"]) == 5
+    for w in range(5):
+        cell = births["cell"][w]
+        if GAP[w] < 0:
+            assert births["cause"][w] == BirthCause.FOUNDER
+            assert births["mate"][w] == births["parent"][w] == -1
+            continue
+        assert cell == w * N + GAP[w]
+        parent, other = w * N + PARENT[w] + 1, w * N + OTHER[w] + 1
+        mated = w != 2
+        assert births["parent"][w] == parent
+        assert births["mate"][w] == (other if mated else -1)
+        weights = np.concatenate([np.ravel(np.asarray(b)[cell]) for b in organisms.genome.values()])
+        assert set(weights.tolist()) == ({parent, other} if mated else {parent})
+        note = -(cell.astype(int) + 1)
+        assert births["quarters"][w].view(np.int32) == np.asarray(organisms.notes)[cell, 0] == note

@@ -1,16 +1,19 @@
 """One tick of deaths and births in invented worlds, for tests of turnover."""
 
+from functools import partial
 from typing import NamedTuple
 
 import jax
-import jax.numpy as jnp
 import numpy as np
+from jax import Array
 
 from primordia.brains.contract import Genome
 from primordia.law import events as log
 from primordia.law.law import Law
 from primordia.law.turnover import birth_keys, turnover
 from primordia.law.world import Organisms, World, Worlds
+from primordia.random.keys import Purpose, encrypt
+from primordia.random.wide import Wide
 
 
 class Turned(NamedTuple):
@@ -35,11 +38,10 @@ def turned(
         cause: causes of death, or -1; (W, N) or (C,).
         stopped: the number of a world that has stopped.
     """
-    (organisms, worlds), lists, newborn = jax.jit(turnover, static_argnums=0)(
-        law, world, log.empty(law), jnp.arange(law.worlds) != (-1 if stopped is None else stopped),
-        jnp.asarray(wants.ravel()), jnp.asarray(cause.ravel(), jnp.int32),
-        birth_keys(law, world.worlds),
-    )  # fmt: skip
+    running = np.arange(law.worlds) != (-1 if stopped is None else stopped)
+    (organisms, worlds), lists, newborn = _turned(
+        law, world, running, wants.ravel(), cause.ravel().astype(np.int32)
+    )
     births, deaths = (
         columns.unpacked(np.asarray(list_.rows)[: int(list_.filled)])
         for columns, list_ in (
@@ -50,11 +52,27 @@ def turned(
     return Turned(organisms, worlds, np.asarray(newborn), births, deaths)
 
 
+@partial(jax.jit, static_argnums=0)
+def _turned(law: Law, world: World, running: Array, wants: Array, cause: Array) -> tuple:
+    keys = birth_keys(law, world.worlds)
+    return turnover(law, world, log.empty(law), running, wants, cause, keys)
+
+
+def drawn(seed: object, purpose: Purpose, tick: object, cell: object, index: object = 0) -> Wide:
+    """Return the words of draws, computed by NumPy; all arguments but the purpose may be arrays."""
+    with np.errstate(over="ignore"):  # NumPy warns of scalars that wrap, as they must
+        key = encrypt(encrypt(_whole(seed), _whole(tick)), Wide(np.uint32(purpose), np.uint32(0)))
+        return encrypt(key, Wide(np.asarray(cell, np.uint32), np.asarray(index, np.uint32)))
+
+
+def _whole(values: object) -> Wide:
+    whole = np.asarray(values, np.uint64)
+    return Wide(np.uint32(whole >> np.uint64(32)), np.uint32(whole & np.uint64(2**32 - 1)))
+
+
 def numbered(genome: Genome, numbers: np.ndarray) -> Genome:
     """Return genomes in which each weight of an organism is the organism's number."""
     return {
-        name: jnp.broadcast_to(
-            jnp.asarray(numbers, jnp.float32).reshape(-1, *[1] * (block.ndim - 1)), block.shape
-        )
+        name: np.broadcast_to(np.float32(numbers).reshape(-1, *[1] * (block.ndim - 1)), block.shape)
         for name, block in genome.items()
     }

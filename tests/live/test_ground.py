@@ -16,15 +16,9 @@ from primordia.live.ground import Ground, Medians, medians
 from primordia.runs import loop
 from primordia.runs.lives import ALIVE
 from primordia.runs.loop import Status
-from tests.worlds import MEADOW, config
+from tests.worlds import HERD, config
 
-SETTINGS: dict[str, Any] = {
-    **MEADOW,
-    "brain": {"hidden": 3},
-    "hazard": 0.05,
-    "replication": 0.3,
-    "seeds": 3,
-}
+SETTINGS: dict[str, Any] = {**HERD, "hazard": 0.05, "replication": 0.3}
 
 
 def lived(folder: Path, followed: list[Ground]) -> primordia.Run:

@@ -2,7 +2,6 @@
 
 import io
 import os
-import signal
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -20,11 +19,10 @@ from primordia.live.terminal import Keyboard
 from primordia.live.view import View
 from primordia.runs import loop
 from tests.live.terminals import Terminal, opened
-from tests.worlds import MEADOW, config
+from tests.trouble import SMALL
+from tests.worlds import HERD, config
 
 # In a terminal.
-
-SMALL = ("CartPole-survival", "--cells", "8", "--hazard", "0.002", "--until", "none")
 
 
 @pytest.fixture
@@ -33,12 +31,13 @@ def terminal() -> Iterator[Terminal]:
         yield terminal
 
 
-def test_keys_pause_step_and_quit_and_the_terminal_is_given_back(
+def test_keys_pause_step_and_stop_and_the_terminal_is_given_back(
     terminal: Terminal, tmp_path: Path
 ) -> None:
     before, run = terminal.modes(), tmp_path / "run"
-    process = terminal.begin("run", *SMALL, "--out", run)
-    terminal.read_until("\x1b[?25l", "line of descent", "quit")
+    words = "run", *SMALL[:-1], "--until", "none", "--speed", "5", "--out", run
+    process = terminal.begin(*words)
+    terminal.read_until("\x1b[?25l", "line of descent", "quit", "at most 5 ticks/s")
     assert terminal.modes() != before
     terminal.press(b" ")
     ticks = [terminal.read_match(r"paused.*?tick +([\d,]+) ")]
@@ -49,18 +48,9 @@ def test_keys_pause_step_and_quit_and_the_terminal_is_given_back(
     assert np.diff(counts).tolist() == [1, 1]
     terminal.press(b"?")
     terminal.read_until("Live one tick, and pause.")
-    terminal.press(b"q")
+    terminal.press(b"\x03")
     written = terminal.read_until("\x1b[?25h", "Stopped and saved. Go on with: primordia resume")
     assert "\x1b[?25l" not in written, "the cursor stays"
-    assert process.wait(timeout=60) == 130
-    assert terminal.modes() == before
-
-    process = terminal.begin("resume", run, "--speed", "5")
-    terminal.read_until("at most 5 ticks/s")
-    terminal.press(b" ")
-    terminal.read_until("paused")
-    process.send_signal(signal.SIGTERM)
-    terminal.read_until("\x1b[?25h", "Stopped and saved")
     assert process.wait(timeout=60) == 130
     assert terminal.modes() == before
 
@@ -158,16 +148,6 @@ def test_without_a_terminal_there_are_no_keys(monkeypatch: pytest.MonkeyPatch) -
         assert keys.pressed(0.0) == ""
 
 
-def test_keys_are_named_only_where_there_are_keys(terminal: Terminal, tmp_path: Path) -> None:
-    """Standard input may be a file while the screen is a terminal."""
-    process = terminal.begin("run", *SMALL, "--out", tmp_path / "run", keys=os.devnull)
-    written = terminal.read_until("\x1b[?25l", "line of descent", "takeovers")
-    assert "quit" not in written
-    process.send_signal(signal.SIGINT)
-    terminal.read_until("Stopped and saved.")
-    assert process.wait(timeout=60) == 130
-
-
 # Nothing that is lived.
 
 
@@ -187,9 +167,8 @@ def watch(keys: str, run: Path) -> list[str]:
     # rich keeps the codes of a style for the first terminal that it meets, so all have the same colours
     colours: Any = {"force_terminal": True, "color_system": "truecolor"}
     console = Console(file=io.StringIO(), width=100, height=30, **colours)
-    settings = {**MEADOW, "brain": {"hidden": 3}, "hazard": 0.05, "replication": 0.3, "seeds": 2}
     with View(console, Pace(), Pressed(keys)) as view:
-        loop.start(config(settings, stop={"ticks": 400}), run, listen=view)
+        loop.start(config(HERD, stop={"ticks": 400}), run, listen=view)
     return digests(run)
 
 

@@ -2,7 +2,9 @@
 
 import io
 import json
+import os
 import re
+import signal
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +22,8 @@ from tests.commands import here
 from tests.live.drawn import text
 from tests.live.posed import look_alive
 from tests.live.terminals import opened
-from tests.worlds import MEADOW, config
+from tests.trouble import SMALL
+from tests.worlds import HERD, MEADOW, config
 
 # The view as a whole.
 
@@ -29,10 +32,13 @@ WORLDS: dict[str, dict[str, Any]] = {
     "torus": {"cells": 48, "placement": {"topology": "torus8"}},
     "worlds": {"cells": 20, "seeds": 60},
     "big": {"cells": 17_000, "genesis": "fill"},
+    "herd": {},
 }
 
 
 def meadow(name: str) -> Engine:
+    if name == "herd":
+        return Engine(config(HERD))
     return Engine(config(MEADOW, hazard=0.02, metabolism=None, **WORLDS[name]))
 
 
@@ -40,7 +46,7 @@ def meadow(name: str) -> Engine:
 def running(request: pytest.FixtureRequest) -> tuple[str, Engine]:
     """Return a world of each shape; most are only posed as if they had lived, which saves compilation."""
     name, made = request.param, meadow(request.param)
-    if name == "ring":
+    if name == "herd":
         made.advance(made.limits({}))
     else:
         look_alive(made)
@@ -88,7 +94,7 @@ def test_the_view_shows_time_population_and_lines(running: tuple[str, Engine]) -
         assert what in text
     assert "saturated" not in text, "only when it is"
     assert ("shown: the first" in text) == (name in ("worlds", "big"))
-    assert ("takeovers" in text) == (name in ("ring", "torus")), "only if all are followed"
+    assert ("takeovers" in text) == (name in ("ring", "torus", "herd")), "only if all are followed"
     assert f"colour: {'branch of the founder' if name == 'big' else 'line of descent'}" in text
     assert int(made.state.world.organisms.alive.sum()) == census.alive.sum()
 
@@ -121,7 +127,9 @@ def test_the_view_follows_the_living(running: tuple[str, Engine]) -> None:
         made.advance(made.limits({}))
         view(loop.Status(made, 1.0))
     followed = view._descent.lines
-    assert len(followed) == {"worlds": 24, "big": 0}.get(name, 1), "at most one for each row"
+    assert len(followed) == {"worlds": 24, "big": 0, "herd": 3}.get(name, 1), (
+        "at most one for each row"
+    )
     organisms, cells = made.state.world.organisms, made.law.cells
     for world, lines in followed.items():
         here = slice(world * cells, (world + 1) * cells)
@@ -138,7 +146,7 @@ def test_a_frame_spells_out_control_characters() -> None:
 
 # Without a terminal.
 
-SMALL = ("CartPole-survival", "--cells", "8", "--hazard", "0.002", "--sample_every", "500")
+CARTS = ("CartPole-survival", "--cells", "16")
 
 
 def test_plain_lines_where_there_is_no_terminal(
@@ -146,24 +154,27 @@ def test_plain_lines_where_there_is_no_terminal(
 ) -> None:
     monkeypatch.setattr(Plain, "EVERY", 0.0)
     monkeypatch.setenv("FORCE_COLOR", "1")
-    done = here("run", *SMALL, "--ticks", 2000, "--out", tmp_path / "run")
+    done = here("run", *CARTS, "--ticks", 2000, "--out", tmp_path / "run")
     assert (done.returncode, done.stderr) == (0, "")
     assert "\x1b" not in done.stdout
-    assert re.search(r"^ +\d+\.\d s  tick \d+  alive \d  births \d+  \S.*/s$", done.stdout, re.M)
+    assert re.search(r"^ +\d+\.\d s  tick \d+  alive \d+  births \d+  \S.*/s$", done.stdout, re.M)
     assert done.stdout.endswith(f"primordia replay {tmp_path / 'run'}\n")
     quiet = here("resume", tmp_path / "run", "--ticks", 3000, "--until", "none", "--quiet")
     assert (quiet.stdout, quiet.stderr) == ("", "")
 
 
-# A terminal, a process, and Ctrl-C.
+# A terminal, a process, and the signal of Ctrl-C.
 
 
 def test_a_terminal_shows_the_strip_and_control_c_saves(tmp_path: Path) -> None:
+    """Standard input is a file here, so no keys are named."""
     with opened() as terminal:
         run = tmp_path / "run"
-        process = terminal.begin("run", *SMALL, "--until", "none", "--out", run)
-        terminal.read_until("\x1b[?25l", "█", "line of descent", "takeovers", "\x1b[38;2")
-        terminal.press(b"\x03")
+        words = "run", *SMALL[:-1], "--until", "none", "--out", run
+        process = terminal.begin(*words, keys=os.devnull)
+        shown = terminal.read_until("\x1b[?25l", "█", "line of descent", "takeovers", "\x1b[38;2")
+        assert "quit" not in shown
+        process.send_signal(signal.SIGINT)
         terminal.read_until("\x1b[?25h", "Stopped and saved. Go on with: primordia resume")
         assert process.wait(timeout=60) == 130
     info = json.loads(here("info", run, "--json").stdout)

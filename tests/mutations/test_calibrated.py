@@ -111,6 +111,7 @@ def test_lengths_double_with_every_fourth_step() -> None:
     np.testing.assert_allclose(LENGTHS[1:] / LENGTHS[:-1], 2**0.25, rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_it_keeps_the_contract() -> None:
     check_mutation(Calibrated(founder_scale=0.3))
     own: Any = {"hidden": FounderBlock(founder_scale=0.1)}

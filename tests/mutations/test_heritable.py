@@ -68,6 +68,7 @@ def test_noise_is_that_of_the_gaussian_times_its_length() -> None:
         np.testing.assert_allclose(noise, base * np.asarray(length(jnp.int32(quarters))), rtol=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("belongs", ["line", "cell"])
 def test_it_keeps_the_contract(belongs: str) -> None:
     check_mutation(Heritable(belongs=belongs))

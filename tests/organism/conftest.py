@@ -21,7 +21,9 @@ WAYS: dict[str, Any] = {
 CLOCKED = {"name": "tests.toys:Clocked", "inner": "mill"}
 
 
-@pytest.fixture(scope="package", params=["in JAX", "on the host"])
+@pytest.fixture(
+    scope="package", params=["in JAX", pytest.param("on the host", marks=pytest.mark.slow)]
+)
 def chain(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     """Make a run of two worlds with seeds of its own, a fork of it, and a fork of the fork."""
     folder = tmp_path_factory.mktemp("chain")

@@ -11,7 +11,7 @@ from tests.organism.test_life import assert_ends_as_recorded
 from tests.worlds import MEADOW, config
 
 
-@pytest.mark.parametrize("cells", [32, 1024])
+@pytest.mark.parametrize("cells", [32, pytest.param(1024, marks=pytest.mark.slow)])
 def test_a_body_starts_as_it_was_born(cells: int, tmp_path: Path) -> None:
     """Compiled code may round a product and a sum once, and several bodies may be born as vectors."""
     full = {"genesis": "fill", "replication": 0.0, "cells": cells, "stop": {"ticks": 2}}

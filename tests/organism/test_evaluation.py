@@ -108,6 +108,7 @@ def test_repeating_its_actions_blindly_gives_the_same_life(pong: Path) -> None:
     assert np.array_equal(blind[:both], seeing[:both])
 
 
+@pytest.mark.slow
 def test_frozen_senses_stay_as_they_are_at_the_start(tmp_path: Path) -> None:
     """An organism without memory that sees a frozen clock repeats one action."""
     habitat, brain = {"name": "tests.toys:Watch"}, {"kind": "feed-forward"}
@@ -138,6 +139,7 @@ def test_one_random_game_is_not_taken_for_all_games(poles: Path) -> None:
     assert "are the same" not in champions
 
 
+@pytest.mark.slow
 def test_an_organism_starves_by_the_metabolism_of_its_task(tmp_path: Path) -> None:
     hungry = {"metabolism": {"store": 30.0, "gain": 0.5}, "stop": {"ticks": 10}}
     loop.start(
@@ -152,6 +154,7 @@ def test_an_organism_starves_by_the_metabolism_of_its_task(tmp_path: Path) -> No
     assert cut.to_dict()["alive_when_cut"] == 2
 
 
+@pytest.mark.slow
 def test_the_command_prints_figures_and_json(pong: Path) -> None:
     organism = "--organism", str(primordia.load(pong).oldest().id)
     one = here("evaluate", pong, *organism).stdout

@@ -131,7 +131,8 @@ def test_a_life_older_than_a_fork_is_refused_if_bodies_cannot_be_saved(
         RelivedLife.of(fork, lives.id[0], lives.world[0])
 
 
-@pytest.mark.parametrize("kind", ["Meadow", "Mirror"])
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["Meadow", pytest.param("Mirror", marks=pytest.mark.slow)])
 def test_a_failed_simulation_is_a_fault_even_if_it_reports_death(kind: str, tmp_path: Path) -> None:
     """It is a fault also in a tick in which an accident strikes, as it does from the ninth tick on."""
     inner = {"inner": "meadow"} if kind == "Mirror" else {}

@@ -23,12 +23,14 @@ HOST = {"name": "tests.toys:Mirror", "inner": "mill"}
 Change = Callable[[RelivedLife], None]
 
 
-@pytest.fixture(scope="module", params=["in JAX", "on the host"])
+@pytest.fixture(
+    scope="module", params=["in JAX", pytest.param("on the host", marks=pytest.mark.slow)]
+)
 def mill(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Archive:
     """Make a run in which organisms die of hunger, of a broken wheel and by accident."""
     run = tmp_path_factory.mktemp("mill") / "run"
     habitat = HOST if request.param == "on the host" else MILL["habitat"]
-    settings = {**MILL, "habitat": habitat, "hazard": 0.02, "brain": {"hidden": 2}}
+    settings = {**MILL, "habitat": habitat, "hazard": 0.02, "seeds": 2}
     loop.start(config({**settings, "seed": 6, "stop": {"ticks": 400}}), run)
     return Archive(run)
 

@@ -41,11 +41,11 @@ def test_the_mark_of_senses_changes_with_each_bit_and_with_their_order() -> None
 BASES: dict[str, str | dict[str, Any]] = {"poles": "CartPole-survival", "mill": MILL}
 
 
-@pytest.fixture(scope="module", params=BASES)
+@pytest.fixture(scope="module", params=[pytest.param("poles", marks=pytest.mark.slow), "mill"])
 def players(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Players:
     """Return a few organisms of a world, the last of which lives long."""
     folder = tmp_path_factory.mktemp("run") / "run"
-    settings = config(BASES[request.param], seeds=2, cells=16, stop={"ticks": 400})
+    settings = config(BASES[request.param], seeds=2, cells=24, stop={"ticks": 400})
     loop.start(settings, folder)
     run = primordia.load(folder)
     lives = run.lives()

@@ -89,6 +89,7 @@ def test_a_fork_is_a_state_to_begin_with(chain: list[Path]) -> None:
     assert (by_itself.begins, by_itself.respects) == (asked.begins, asked.respects)
 
 
+@pytest.mark.slow
 def test_an_arms_worlds_are_those_of_its_runs(chain: list[Path], tmp_path: Path) -> None:
     other = config({**WAYS, "seeds": 1, "seed": 40, "stop": {"ticks": 60}})
     loop.start(other, tmp_path / "a")
@@ -135,6 +136,7 @@ def test_a_life_is_saved_tick_by_tick(chain: list[Path], tmp_path: Path) -> None
                                       table[name].to_numpy())  # fmt: skip
 
 
+@pytest.mark.slow
 def test_a_video_is_made_of_a_life_that_agrees(tmp_path: Path) -> None:
     run, film = tmp_path / "run", tmp_path / "life.gif"
     primordia.run("CartPole-survival", run, cells=8, stop={"ticks": 200, "until": "none"})

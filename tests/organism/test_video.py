@@ -207,6 +207,7 @@ def test_wrong_input_is_an_error_that_says_why(poles: Path, mill: Path, tmp_path
     complains(here("replay", tmp_path), 2, "is not a run")
 
 
+@pytest.mark.slow
 def test_a_habitat_without_pictures_gives_no_video(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

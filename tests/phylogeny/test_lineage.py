@@ -23,12 +23,8 @@ from tests.worlds import MILL, config
 
 WORLDS: dict[str, Any] = {
     **MILL,
-    "brain": {"hidden": 2},
-    "cells": 12,
-    "genesis": "fill",
     "hazard": 0.02,
     "replication": 0.2,
-    "seasons": [],
     "seed": 5,
     "seeds": 2,
 }
@@ -252,7 +248,7 @@ def test_the_line_of_one_organism_is_written(family: Path) -> None:
 
 
 def test_children_of_two_parents_list_both(tmp_path: Path) -> None:
-    run = live(tmp_path / "run", 150, recombination={"probability": 0.7})
+    run = live(tmp_path / "run", 300, recombination={"probability": 0.7})
     rows = lineage(run)
     parents, born = parents_of(rows), records(run, "births")
     mates = dict(zip(born["id"], born["mate"] + born["world"] * 10.0**12, strict=True))

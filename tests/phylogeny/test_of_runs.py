@@ -56,7 +56,7 @@ def mated(run: Path) -> Path:
     return run.parent / "mated"
 
 
-@pytest.mark.parametrize("which", ["run", "mated"])
+@pytest.mark.parametrize("which", ["run", pytest.param("mated", marks=pytest.mark.slow)])
 def test_a_line_has_its_lives_and_the_changes_of_its_genomes(
     which: str, request: pytest.FixtureRequest
 ) -> None:
@@ -235,6 +235,7 @@ def test_bad_input_is_one_line(run: Path, words: list, part: str) -> None:
     complains(here(*(str(word).replace("RUN", str(run)) for word in words)), 2, part)
 
 
+@pytest.mark.slow
 def test_lines_of_a_world_that_died_out_are_lost(tmp_path: Path) -> None:
     """All 16 founders die at once, and so do their successors."""
     starving = {
@@ -255,6 +256,7 @@ def test_lines_of_a_world_that_died_out_are_lost(tmp_path: Path) -> None:
     assert "They descend from 16 organisms" in here("ancestors", tmp_path / "run").stdout
 
 
+@pytest.mark.slow
 def test_without_heredity_lines_go_on_and_a_line_of_descent_does_not(tmp_path: Path) -> None:
     """The control's children are random founders that have a mother; lines are hers, genomes are not."""
     loop.start(config({**LIVES, "inheritance": "founder"}, stop={"ticks": 200}), tmp_path / "run")

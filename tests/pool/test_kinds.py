@@ -18,7 +18,7 @@ from primordia.pool.workers import Workers
 from tests.counters import FIELDS
 
 ALL = np.ones(7, bool)
-KINDS = pytest.mark.parametrize("workers", [0, 1, 3])
+KINDS = pytest.mark.parametrize("workers", [0, 2])
 
 
 def counters(workers: int | None, cells: int = 7) -> Pool:
@@ -50,7 +50,7 @@ def test_only_cells_asked_for_are_stepped_and_reset(workers: int) -> None:
         assert pool.arrays["total"].tolist() == [100, 100, 105, 100, 105, 100, 105]
 
 
-@pytest.mark.parametrize(("one", "other"), [(3, 2), (2, 0), (0, 3)])
+@pytest.mark.parametrize(("one", "other"), [(2, 1), (2, 0), (0, 2)])
 def test_saved_states_go_on_in_another_kind(one: int, other: int) -> None:
     with closing(counters(one)) as pool:
         pool.reset(ALL)
@@ -66,9 +66,8 @@ def test_saved_states_go_on_in_another_kind(one: int, other: int) -> None:
     ("cores", "asked", "cells", "in_workers"),
     [
         ("1", None, 5, 0),
-        ("3", None, 5, 3),
-        ("8", None, 5, 5),
-        ("1", 2, 5, 2),
+        ("2", None, 5, 2),
+        ("8", None, 2, 2),
         ("3", 0, 5, 0),
         ("3", None, 1, 0),
         ("3", 2, 1, 1),

@@ -7,23 +7,15 @@ from typing import Any
 import pytest
 
 import primordia
+from primordia.report import lives
 from primordia.runs import loop
 from tests.report.browser import DESKTOP, Page, browser
-from tests.worlds import MEADOW, config
+from tests.worlds import HERD, config
 
 TORUS: dict[str, Any] = {
-    **MEADOW,
+    **HERD,
     "about": "Meadows in which nothing moves.",
-    "habitat": {"name": "tests.toys:Meadow", "lifespan": 90},
-    "brain": {"kind": "feed-forward", "hidden": 1},
-    "placement": {"topology": "torus8"},
-    "cells": 24,
     "seed": 5,
-    "seeds": 3,
-    "replication": 0.05,
-    "hazard": 0.01,
-    "metabolism": {"store": 400.0},
-    "sample_every": 100,
     "stop": {"ticks": 900},
 }
 
@@ -46,8 +38,10 @@ def cart(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def cart_page(cart: Path) -> Path:
-    """Write the page of a run, with films."""
-    return primordia.load(cart).report()
+    """Write the page of a run, with short films."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(lives, "PART", 1.0)
+        return primordia.load(cart).report()
 
 
 @pytest.fixture(scope="session")

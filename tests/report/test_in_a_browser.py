@@ -15,7 +15,7 @@ from primordia.report.content import of_run
 from primordia.report.page import page as made
 from primordia.runs.archive import Archive
 from tests.commands import here
-from tests.experiments.meadows import write
+from tests.experiments.meadows import herds
 from tests.report.browser import PHONE, Page, differ
 
 CANVAS = ".ground canvas"
@@ -119,7 +119,7 @@ def test_no_name_of_a_run_is_read_as_html(cart: Path, tmp_path: Path, page: Page
 
 
 def test_the_arms_of_an_experiment_stand_side_by_side(tmp_path: Path, page: Page) -> None:
-    file, out = write(tmp_path, jobs={"worlds": 3}), tmp_path / "out"
+    file, out = herds(tmp_path), tmp_path / "out"
     for job in (0, 1):
         assert here("experiment", file, "--out", out, "--job", job, "--quiet").returncode == 0
     page.open_file(primordia.load(out).report())

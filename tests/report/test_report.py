@@ -17,10 +17,9 @@ from primordia.report.lives import chosen, films
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
-from tests.experiments.meadows import write
+from tests.experiments.meadows import herds
 from tests.runs.conftest import folder
 from tests.strangers import begun, elsewhere
-from tests.worlds import config
 
 __all__ = ["folder"]
 
@@ -43,13 +42,13 @@ def test_a_page_is_written_into_the_run_or_where_one_says(torus: Path, tmp_path:
 
 
 def test_several_runs_are_one_arm(torus: Path, tmp_path: Path) -> None:
-    loop.start(Archive(torus).config.model_copy(update={"seed": 9, "seeds": 1}), tmp_path / "more")
+    loop.start(Archive(torus).config.model_copy(update={"seed": 9}), tmp_path / "more")
     complains(here("report", str(torus.parent / "tor*"), tmp_path / "more"), 2, "--out FILE.html")
     out = tmp_path / "page.html"
     assert here("report", torus, tmp_path / "more", "--out", out).returncode == 0
-    assert content(out)["subtitle"].endswith("seeds 5 to 7, 9")
+    assert content(out)["subtitle"].endswith("seeds 5 to 7, 9 to 11")
     names = [world["name"] for world in content(out)["worlds"]]
-    assert names == ["seed 5", "seed 6", "seed 7", "seed 9"]
+    assert names == [f"seed {seed}" for seed in (5, 6, 7, 9, 10, 11)]
 
 
 def test_names_that_are_no_page_are_one_line(torus: Path, tmp_path: Path) -> None:
@@ -101,29 +100,19 @@ def test_the_first_life_in_the_page_of_a_fork_was_born_in_the_fork(cart: Path) -
     assert films(unborn) == {"films": [], "missing": "nothing has been born since the fork"}
 
 
-def test_the_command_in_the_page_lives_the_run_again(
-    cart_page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_the_command_and_the_settings_in_a_page_live_the_run_again(
+    cart: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    (shown,) = content(cart_page)["facts"]
+    shown = facts(Archive(cart), primordia.load(cart).info())
     command, look = map(shlex.split, shown["commands"])
     assert here(*command[1:], "--quiet").returncode == 0
     (world,) = json.loads(here(*look[1:]).stdout)["worlds"]
     assert shown["digests"] == [{"seed": "0", "digest": world["digest"]}]
-
-
-def test_a_run_that_flags_cannot_express_is_repeated_by_its_settings(tmp_path: Path) -> None:
-    """Its limits are those with which it was resumed."""
-    season = {"kind": "schedule", "setting": "hazard", "at": 50, "value": 0.01}
-    loop.start(config(cells=8, stop={"ticks": 100}, seasons=[season]), tmp_path / "run")
-    loop.resume(tmp_path / "run", {"ticks": 200})
-    shown = facts(Archive(tmp_path / "run"), primordia.load(tmp_path / "run").info())
-    assert shown["commands"][0] == "primordia run config.toml --out again"
-    assert shown["settings"]["stop.ticks"] == "200"
     (tmp_path / "config.toml").write_text(shown["toml"])
-    primordia.run(str(tmp_path / "config.toml"), tmp_path / "again")
-    again = primordia.load(tmp_path / "again").info()["worlds"]
-    assert [each["digest"] for each in shown["digests"]] == [each["digest"] for each in again]
+    primordia.run(str(tmp_path / "config.toml"), tmp_path / "settings")
+    (again,) = primordia.load(tmp_path / "settings").info()["worlds"]
+    assert again["digest"] == world["digest"]
 
 
 def test_a_fork_is_verified_since_it_needs_its_directory(torus: Path, tmp_path: Path) -> None:
@@ -135,7 +124,7 @@ def test_a_fork_is_verified_since_it_needs_its_directory(torus: Path, tmp_path: 
 
 
 def test_an_experiment_is_shown_as_far_as_it_is(tmp_path: Path) -> None:
-    file, out = write(tmp_path, jobs={"worlds": 3}), tmp_path / "out"
+    file, out = herds(tmp_path), tmp_path / "out"
     assert here("experiment", file, "--out", out, "--job", 0, "--quiet").returncode == 0
     complains(here("report", out), 2, "arm harsh", "has not begun")
     assert here("experiment", file, "--out", out, "--job", 1, "--quiet").returncode == 0

@@ -66,7 +66,7 @@ def test_no_file_is_checked_twice(fork: Path, checked: Counter[str]) -> None:
 def test_a_command_opens_its_run_once(
     words: str | tuple[object, ...], tmp_path: Path, checked: Counter[str]
 ) -> None:
-    made = primordia.run("CartPole-survival", tmp_path / "run", cells=8, stop={"ticks": 100})
+    made = primordia.run("CartPole-survival", tmp_path / "run", cells=16, stop={"ticks": 100})
     checked.clear()
     name, *options = (words, tmp_path / "genome") if isinstance(words, str) else words
     done = here(name, made.path, *options)
@@ -75,7 +75,7 @@ def test_a_command_opens_its_run_once(
 
 
 def test_a_call_from_python_opens_its_run_once(tmp_path: Path, checked: Counter[str]) -> None:
-    made = primordia.run("CartPole-survival", tmp_path / "run", cells=8, stop={"ticks": 100})
+    made = primordia.run("CartPole-survival", tmp_path / "run", cells=16, stop={"ticks": 100})
     checked.clear()
     oldest = made.oldest()
     oldest.replay(tmp_path / "life.gif", ages=(0, 20))

@@ -39,11 +39,11 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Make three worlds in one run, `whole`, and in two, `arm`, and forks of these."""
     folder = tmp_path_factory.mktemp("runs")
     start(folder / "whole", 0, 3)
-    primordia.load(folder / "whole").fork(250, folder / "forked" / "whole", hazard=0.01)
+    primordia.load(folder / "whole").fork(250, folder / "forked" / "whole", seed=80)
     for name, (first, worlds) in JOBS.items():
         start(folder / "arm" / name, first, worlds)
         primordia.load(folder / "arm" / name).fork(
-            250, folder / "forked" / "arm" / name, hazard=0.01
+            250, folder / "forked" / "arm" / name, seed=80 + first
         )
     return folder
 
@@ -100,8 +100,11 @@ def test_an_exported_genome_tells_the_seed_of_its_own_world(
     for run in both:
         (number,) = run.export(tmp_path / "x.safetensors", world=world)
         about = genomes.about(tmp_path / "x.safetensors")
-        seed = str(SETTINGS["seed"] + world)
-        assert about == {"task": "mill", "seed": seed, "organisms": str(number)}
+        assert about == {
+            "task": "mill",
+            "seed": str(run.opened().world_seeds[world]),
+            "organisms": str(number),
+        }
 
 
 def test_figures_of_an_arm_are_put_in_its_folder(runs: Path) -> None:
@@ -110,13 +113,13 @@ def test_figures_of_an_arm_are_put_in_its_folder(runs: Path) -> None:
 
 
 def test_runs_are_compared_as_arms(runs: Path) -> None:
-    start(runs / "other-1", 50, 2, hazard=0.1)
-    start(runs / "other-2", 70, 1, hazard=0.1)
-    compared = primordia.compare(f"mild={runs / 'whole'}", f"harsh={runs}/other-*")
+    start(runs / "other-1", 50, 2)
+    start(runs / "other-2", 70, 1)
+    compared = primordia.compare(f"mild={runs / 'whole'}", f"later={runs}/other-*")
     again = primordia.compare(runs / "arm", primordia.load([runs / "other-2", runs / "other-1"]))
-    assert [arm.name for arm in compared.arms] == ["mild", "harsh"]
+    assert [arm.name for arm in compared.arms] == ["mild", "later"]
     assert [arm.worlds for arm in compared.arms] == [3, 3]
-    assert compared.arms[1].settings == {"hazard": 0.1, "seed": 53}
+    assert compared.arms[1].settings == {"seed": 53}
     for one, other in zip(compared.arms, again.arms, strict=True):
         for outcome, measured in one.measured.items():
             np.testing.assert_array_equal(other.measured[outcome].value, measured.value)

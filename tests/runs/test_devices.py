@@ -21,7 +21,7 @@ CARD = "NVIDIA H100 80GB HBM3"
 def elsewhere(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run that says that it was made on a device which is not here."""
     run = tmp_path_factory.mktemp("device") / "run"
-    primordia.run("CartPole-survival", run, {"stop": {"ticks": 60, "until": None}}, cells=8)
+    primordia.run("CartPole-survival", run, {"stop": {"ticks": 60, "until": None}}, cells=16)
     versions = json.loads((run / "versions.json").read_text())
     (run / "versions.json").write_text(json.dumps({**versions, "device": CARD}))
     return run

@@ -1,18 +1,22 @@
-"""Seasons of a fork: its ratchets look back as far as the fork, and no further."""
+"""Seasons of a fork: new ratchets look back as far as the fork, and no further; old ones go on.
+
+Forks of invented worlds are tested here, and lives in forks with seasons in `test_fork`.
+"""
 
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
+import jax.numpy as jnp
 import pytest
 
-import primordia
 from primordia.errors import InputError
-from primordia.random.wide import to_host
-from primordia.runs import loop
+from primordia.law.metabolism import ONE
+from primordia.law.world import Organisms, World, Worlds
+from primordia.random.wide import to_host, wide
+from primordia.runs import fork
 from tests.runs.forking import COUNTS, adapted
-from tests.worlds import MEADOW, config
-
-AT = 40
+from tests.worlds import HERD, MEADOW, config, law_of
 
 
 def ratchet(above: float) -> dict[str, Any]:
@@ -21,40 +25,8 @@ def ratchet(above: float) -> dict[str, Any]:
             "factor": 2.0, "every": 10}  # fmt: skip
 
 
-def meadow(food: float, **more: Any) -> dict[str, Any]:
-    habitat = {**MEADOW["habitat"], "food": food}
-    rest = {"brain": {"hidden": 1}, "replication": 0.1, "seeds": 2, "sample_every": 5}
-    metabolism = {"metabolism": {"store": 1000.0, "drain": 0.25}}
-    return {**MEADOW, **rest, **metabolism, "habitat": habitat, "stop": {"ticks": AT}, **more}
-
-
-def test_a_new_ratchet_counts_food_since_the_fork(tmp_path: Path) -> None:
-    """Before the fork the meadow had no food."""
-    loop.start(config(meadow(0.0)), tmp_path / "run")
-    changes = {"habitat": {"food": 1.0}, "seasons": [ratchet(0.9)], "stop": {"ticks": AT + 25}}
-    fork = primordia.load(tmp_path / "run").fork(AT, tmp_path / "fork", **changes)
-    metrics = fork.arrays("metrics")
-    for world in range(2):
-        here = (metrics["world"] == world) & (metrics["tick"] > AT)
-        values = metrics["metabolism.drain"][here]
-        drain = dict(zip(metrics["tick"][here].tolist(), values, strict=True))
-        assert [drain[AT + later] for later in (5, 10, 15, 20)] == [0.25, 0.5, 0.5, 1.0]
-
-
-def test_an_old_ratchet_goes_on_looking_back_to_its_last_look(tmp_path: Path) -> None:
-    """The fork is between two looks, at ticks 20 and 40; food ends with it."""
-    seasons = [{**ratchet(0.4), "every": 20},
-               {**ratchet(0.6), "every": 20, "setting": "metabolism.store"}]  # fmt: skip
-    still = {"replication": 0.0, "genesis": "fill", "stop": {"ticks": 30}}
-    loop.start(config(meadow(1.0, seasons=seasons, **still)), tmp_path / "run")
-    changes = {"habitat": {"food": 0.0}, "stop": {"ticks": 65}}
-    fork = primordia.load(tmp_path / "run").fork(30, tmp_path / "fork", **changes)
-    metrics = fork.arrays("metrics")
-    here = metrics["world"] == 1
-    for setting, first, turns in (("drain", 0.25, [2, 4, 4]), ("store", 1000.0, [2, 2, 2])):
-        values = metrics[f"metabolism.{setting}"][here].tolist()
-        now = dict(zip(metrics["tick"][here].tolist(), values, strict=True))
-        assert [now[tick] for tick in (35, 40, 60)] == [first * times for times in turns]
+def meadow(**more: Any) -> dict[str, Any]:
+    return {**MEADOW, "seeds": 2, "metabolism": {"store": 1000.0, "drain": 0.25}, **more}
 
 
 @pytest.mark.parametrize("setting", ["gain", "store", "drain", "effort_cost", "cap"])
@@ -65,15 +37,29 @@ def test_a_season_of_a_metabolism_that_there_is_not_is_refused(
     with pytest.raises(InputError, match=rf"metabolism\.{setting}"):
         config(MEADOW, seasons=[season])
     assert config(MEADOW, seasons=[season], metabolism={"store": 9.0}).seasons
-    if setting == "gain":
-        loop.start(config(MEADOW, brain={"hidden": 1}, stop={"ticks": 5}), tmp_path / "run")
-        with pytest.raises(InputError, match=r"metabolism\.gain"):
-            primordia.load(tmp_path / "run").fork(3, tmp_path / "fork", seasons=[season])
+    (tmp_path / "config.toml").write_text(config(MEADOW).to_toml())
+    source: Any = SimpleNamespace(path=tmp_path, config=SimpleNamespace(kept={}))
+    with pytest.raises(InputError, match=rf"metabolism\.{setting}"):
+        fork._fork_config(source, {"seasons": [season]}, 3)
+
+
+def test_hunger_that_is_added_to_a_world_begins_with_full_stores() -> None:
+    """So organisms that are alive at the fork starve together."""
+    law, nothing = law_of(HERD), [None] * len(Organisms._fields)
+    before: Any = SimpleNamespace(law=SimpleNamespace(beginning=()))
+    after: Any = SimpleNamespace(law=law)
+    climate = dict.fromkeys(law.rates, jnp.zeros(3))
+    worlds: Any = Worlds(*[wide([9] * 3)] * len(Worlds._fields))
+    worlds = worlds._replace(sample_wait=jnp.ones(3, int), climate=climate, calm=jnp.zeros(3, int))
+    world = World(Organisms(*nothing), worlds)
+    old, new = config(HERD, metabolism=None), config(HERD)
+    energy = fork._adapt(world, before, after, old, new, 9).organisms.energy
+    assert energy.tolist() == [400 * ONE] * 3 * 24
 
 
 def looks_of(at: int, old: list[dict[str, Any]], new: list[dict[str, Any]]) -> Any:
     """Return the looks of a fork that has other seasons than before."""
-    before, after = (config(meadow(1.0, seasons=seasons)) for seasons in (old, new))
+    before, after = (config(meadow(seasons=seasons)) for seasons in (old, new))
     return adapted(at, before, after).looks
 
 
@@ -114,4 +100,4 @@ def test_ratchets_begin_to_count_at_the_fork_if_any_season_has_changed(
 )
 def test_a_changed_metabolism_fills_no_store(changed: dict[str, float]) -> None:
     """All organisms keep their energy, as `adapted` asserts of every fork."""
-    adapted(10, config(meadow(1.0)), config(meadow(1.0, metabolism=changed)))
+    adapted(10, config(meadow()), config(meadow(metabolism=changed)))

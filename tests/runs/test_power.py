@@ -19,19 +19,10 @@ from primordia.runs import bundle, checkpoint, directory, loop, record
 from primordia.runs.archive import Archive
 from primordia.runs.arrays import world_ticks
 from tests.disk import Disk, Instant
-from tests.worlds import MEADOW, config
+from tests.worlds import HERD, config
 
 HALF, TICKS = 150, 300
-SETTINGS: dict[str, Any] = {
-    **MEADOW,
-    "brain": {"hidden": 1},
-    "cells": 8,
-    "seeds": 2,
-    "replication": 0.1,
-    "hazard": 0.03,
-    "sample_every": 20,
-    "stop": {"ticks": HALF},
-}
+SETTINGS: dict[str, Any] = {**HERD, "stop": {"ticks": HALF}}
 
 
 @dataclass

@@ -14,31 +14,52 @@ from primordia.errors import InputError
 from primordia.history.info import info
 from primordia.runs import checkpoint, directory, loop
 from primordia.runs.archive import Archive
+from primordia.runs.arrays import world_ticks
 from primordia.runs.manifest import Progress
 from primordia.settings.limits import Stop
 from tests.commands import begin, complains, here
+from tests.trouble import flip, newest
+from tests.worlds import MILL, config
 
-WHAT = ("CartPole-survival", "--seeds", "8", "--cells", "64", "--stop.until", "saturation")
-TICKS = 30_000
+TICKS, FEW = 60_000, 3_000
+"""Ticks of runs that are disturbed while they live, and of others."""
 SLOWLY = ("--checkpoint-every", "0.05")
 
 
 @pytest.fixture(scope="module")
-def through(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
-    """Return the digests of an undisturbed run."""
-    run = tmp_path_factory.mktemp("through") / "run"
-    assert here("run", *WHAT, "--ticks", TICKS, "--out", run).returncode == 0
-    return digests(run)
+def mill(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Write the file of a task: two worlds with seasons, a metabolism and a noisy motor."""
+    file = tmp_path_factory.mktemp("task") / "mill.toml"
+    file.write_text(config(MILL, brain={"hidden": 4}, seeds=2).to_toml())
+    return file
+
+
+@pytest.fixture(scope="module")
+def through(mill: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[int, list[str]]:
+    """Return the digests of two undisturbed runs by their ticks."""
+    folder = tmp_path_factory.mktemp("through")
+    for ticks in (TICKS, FEW):
+        lived(mill, folder / str(ticks), ticks)
+    return {ticks: digests(folder / str(ticks)) for ticks in (TICKS, FEW)}
+
+
+def lived(mill: Path, run: Path, ticks: int, *words: object) -> Path:
+    """Live a run in this process."""
+    done = here("run", mill, "--ticks", ticks, "--out", run, "--quiet", *words)
+    assert (done.returncode, done.stderr) == (0, "")
+    return run
 
 
 def digests(run: Path) -> list[str]:
     return [world["digest"] for world in info(Archive(run))["worlds"]]
 
 
-def test_checkpoint_intervals_make_no_difference(through: list[str], tmp_path: Path) -> None:
-    run = tmp_path / "run"
-    assert here("run", *WHAT, "--ticks", TICKS, "--out", run, *SLOWLY).returncode == 0
-    assert digests(run) == through
+def test_checkpoint_intervals_make_no_difference(
+    mill: Path, through: dict[int, list[str]], tmp_path: Path
+) -> None:
+    run = lived(mill, tmp_path / "run", FEW, "--checkpoint-every", 0)
+    assert int(checkpoint.numbered(run)[-1].name) > 3
+    assert digests(run) == through[FEW]
 
 
 @pytest.mark.parametrize(
@@ -64,17 +85,25 @@ def test_a_run_can_be_looked_at_soon_after_its_start(
     assert saved == [(at, 20 + at) for at in expected]
 
 
-def test_ticks_added_later_equal_ticks_lived_at_once(through: list[str], tmp_path: Path) -> None:
-    run = tmp_path / "run"
-    assert here("run", *WHAT, "--ticks", 1_701, "--out", run).returncode == 0
-    assert here("resume", run, "--ticks", 2_499).returncode == 0
-    assert here("resume", run, "--ticks", TICKS).returncode == 0
-    assert digests(run) == through
+def test_ticks_added_later_equal_ticks_lived_at_once(
+    mill: Path, through: dict[int, list[str]], tmp_path: Path
+) -> None:
+    """What was lived before is not lived again."""
+    run, ticks = lived(mill, tmp_path / "run", 1_701), list[int]()
+
+    def listen(status: loop.Status) -> None:
+        ticks.append(int(world_ticks(status.engine.arrays()).min()))
+
+    for before, then in ((1_701, 2_499), (2_499, FEW)):
+        ticks.clear()
+        assert loop.resume(run, {"ticks": then}, listen=listen) == []
+        assert before < ticks[0] <= ticks[-1] == then
+    assert digests(run) == through[FEW]
 
 
-def interrupted(run: Path, how: signal.Signals, rng: random.Random) -> int:
+def interrupted(mill: Path, run: Path, how: signal.Signals, rng: random.Random) -> int:
     """Start a run, disturb it after a random number of checkpoints, and return its exit status."""
-    process = begin("run", *WHAT, "--ticks", TICKS, "--out", run, *SLOWLY, "--quiet")
+    process = begin("run", mill, "--ticks", TICKS, "--out", run, *SLOWLY, "--quiet")
     wanted, deadline = rng.randrange(6), time.monotonic() + 60
     while time.monotonic() < deadline and process.poll() is None:
         known = [path.name for path in run.glob("checkpoints/0*")]
@@ -87,109 +116,97 @@ def interrupted(run: Path, how: signal.Signals, rng: random.Random) -> int:
     return process.returncode
 
 
-def killed_and_resumed(run: Path, seed: int) -> list[str]:
-    status = interrupted(run, signal.SIGKILL, random.Random(seed))
-    assert status == -signal.SIGKILL, "the run had ended, so nothing was tested"
-    assert info(Archive(run))["worlds"][0]["ticks"] < TICKS
-    done = here("resume", run)
-    assert done.returncode == 0, done.stderr
-    return digests(run)
-
-
 @pytest.mark.parametrize(
     "seed", [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (1, 2))]
 )
 def test_kill_9_then_resume_equals_never_killed(
-    through: list[str], tmp_path: Path, seed: int
+    mill: Path, through: dict[int, list[str]], tmp_path: Path, seed: int
 ) -> None:
-    assert killed_and_resumed(tmp_path / "run", seed) == through
-
-
-def test_ctrl_c_saves_and_says_how_to_resume(through: list[str], tmp_path: Path) -> None:
     run = tmp_path / "run"
-    process = begin("run", *WHAT, "--ticks", TICKS, "--out", run, *SLOWLY)
-    while not list(run.glob("checkpoints/0*/manifest.json")):
-        time.sleep(0.005)
-    process.send_signal(signal.SIGINT)
-    _, stderr = process.communicate(timeout=60)
+    status = interrupted(mill, run, signal.SIGKILL, random.Random(seed))
+    assert status == -signal.SIGKILL, "the run had ended, so nothing was tested"
+    assert info(Archive(run))["worlds"][0]["ticks"] < TICKS
+    done = here("resume", run)
+    assert done.returncode == 0, done.stderr
+    assert digests(run) == through[TICKS]
+
+
+def test_ctrl_c_saves_and_says_how_to_resume(
+    mill: Path, through: dict[int, list[str]], tmp_path: Path
+) -> None:
+    """While it lives, the run has one writer."""
+    run = tmp_path / "run"
+    process = begin("run", mill, "--ticks", TICKS, "--out", run, *SLOWLY)
+    try:
+        while not list(run.glob("checkpoints/0*/manifest.json")):
+            time.sleep(0.005)
+        process.send_signal(signal.SIGSTOP)
+        complains(here("resume", run), 2, str(run), "another process")
+    finally:
+        process.send_signal(signal.SIGCONT)
+        process.send_signal(signal.SIGINT)
+        _, stderr = process.communicate(timeout=60)
     assert process.returncode == 130
     assert stderr.strip() == f"Stopped and saved. Go on with: primordia resume {run}"
     assert info(Archive(run))["worlds"][0]["ticks"] < TICKS
     assert here("resume", run).returncode == 0
-    assert digests(run) == through
+    assert digests(run) == through[TICKS]
 
 
-def test_half_written_files_are_ignored(through: list[str], tmp_path: Path) -> None:
-    run = tmp_path / "run"
+def test_half_written_files_are_ignored(
+    mill: Path, through: dict[int, list[str]], tmp_path: Path
+) -> None:
+    run = lived(mill, tmp_path / "run", 1_200)
     half = [run / "checkpoints/.writing-000007/state.npz", run / "births/.writing-000003.parquet"]
-    assert here("run", *WHAT, "--ticks", 1_200, "--out", run).returncode == 0
     for junk in half:
         junk.parent.mkdir(exist_ok=True)
         junk.write_bytes(b"half")
     (run / "deaths" / "000099.parquet").write_bytes(b"named by no manifest")
-    assert here("resume", run, "--ticks", TICKS).returncode == 0
-    assert digests(run) == through
+    assert here("resume", run, "--ticks", FEW).returncode == 0
+    assert digests(run) == through[FEW]
     assert not any(junk.exists() for junk in half)
     assert not (run / "deaths" / "000099.parquet").exists()
 
 
-def test_a_damaged_newest_checkpoint_is_skipped(through: list[str], tmp_path: Path) -> None:
-    run = tmp_path / "run"
-    assert here("run", *WHAT, "--ticks", 27_000, "--out", run, *SLOWLY).returncode == 0
-    newest = sorted(run.glob("checkpoints/0*"))[-1]
-    state = newest / "state.npz"
-    damaged = bytearray(state.read_bytes())
-    damaged[len(damaged) // 2] ^= 1
-    state.write_bytes(damaged)
-    done = here("resume", run, "--ticks", TICKS)
+def test_a_damaged_newest_checkpoint_is_skipped(
+    mill: Path, through: dict[int, list[str]], tmp_path: Path
+) -> None:
+    run = lived(mill, tmp_path / "run", 2_700, "--checkpoint-every", 0)
+    state = newest(run) / "state.npz"
+    flip(state)
+    done = here("resume", run, "--ticks", FEW)
     assert done.returncode == 0
     assert "was not used" in done.stderr
     assert str(state) in done.stderr
-    assert digests(run) == through
+    assert digests(run) == through[FEW]
 
 
-def test_a_run_has_one_writer_at_a_time(tmp_path: Path) -> None:
-    run = tmp_path / "run"
-    process = begin("run", *WHAT, "--ticks", 10**9, "--out", run)
-    while not (run / "versions.json").exists():
-        time.sleep(0.01)
-    try:
-        complains(here("resume", run), 2, str(run), "another process")
-    finally:
-        process.kill()
-        process.communicate()
-
-
-def test_verify_finds_no_difference_in_a_good_run(tmp_path: Path) -> None:
-    run = tmp_path / "run"
-    assert here("run", *WHAT, "--ticks", 1_200, "--out", run).returncode == 0
-    done = here("verify", run)
+def test_verify_finds_no_difference_in_a_good_run(mill: Path, tmp_path: Path) -> None:
+    done = here("verify", lived(mill, tmp_path / "run", 1_200))
     assert (done.returncode, done.stderr) == (0, "")
     assert "is verified" in done.stdout
 
 
-def test_a_script_begins_a_run_or_goes_on_with_it(tmp_path: Path) -> None:
+def test_a_script_begins_a_run_or_goes_on_with_it(mill: Path, tmp_path: Path) -> None:
     """The same words three times: the run is begun, gone on with, and found to have ended."""
     out = tmp_path / "run"
-    words = "run", "CartPole-survival", "--cells", 4, "--seed", 3, "--out", out, "--quiet"
+    words = "run", mill, "--seed", 3, "--out", out, "--quiet"
     assert here(*words, "--ticks", 100, "--resume").returncode == 0
     for _ in range(2):
         done = here(*words, "--ticks", 200, "--resume")
         assert done.returncode == 0, done.stderr
-        assert primordia.load(out).info()["ticks"] == 200
+        assert primordia.load(out).info()["worlds"][1]["ticks"] == 200
     assert here("resume", out).returncode == 0
-    complains(here(*words, "--cells", 5, "--resume"), 2, "cells is 4 there, and 5 here")
+    complains(here(*words, "--cells", 5, "--resume"), 2, "cells is 24 there, and 5 here")
     complains(here(*words), 2, "exists already")
 
 
-def test_what_a_killed_start_has_left_is_no_obstacle(tmp_path: Path) -> None:
+def test_what_a_killed_start_has_left_is_no_obstacle(mill: Path, tmp_path: Path) -> None:
     (tmp_path / "run" / "births").mkdir(parents=True)
     (tmp_path / "run" / "config.toml").write_text("half")
     (tmp_path / "run" / directory.UNBEGUN).touch()
-    run = primordia.run(
-        "CartPole-survival", tmp_path / "run", cells=4, stop={"ticks": 5}, resume=True
-    )
-    assert run.info()["ticks"] == 5
+    run = primordia.run(str(mill), tmp_path / "run", stop={"ticks": 5}, resume=True)
+    assert run.info()["worlds"][0]["ticks"] == 5
     with pytest.raises(InputError, match="needs the directory of the run"):
         primordia.run("CartPole-survival", resume=True)
     (tmp_path / "other").mkdir()

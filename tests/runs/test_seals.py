@@ -19,19 +19,10 @@ from primordia.runs.archive import Archive
 from primordia.runs.digest import digests
 from primordia.runs.verify import verify
 from tests.trouble import flip, newest, reseal
-from tests.worlds import MEADOW, MILL, Lived, config
+from tests.worlds import HERD, MILL, Lived, config
 
 TICKS = 120
-SETTINGS: dict[str, Any] = {
-    **MEADOW,
-    "brain": {"hidden": 1},
-    "cells": 8,
-    "seeds": 2,
-    "replication": 0.1,
-    "hazard": 0.03,
-    "metabolism": {"store": 200.0},
-    "stop": {"ticks": TICKS},
-}
+SETTINGS: dict[str, Any] = {**HERD, "stop": {"ticks": TICKS}}
 UNSEALED = {"lock", "versions.json"}
 """Files without a checksum: the first is empty, the second is compared with what is installed. The source
 of the user's parts, in `code`, is compared with what is there."""
@@ -155,7 +146,7 @@ def test_verify_compares_the_state_of_every_world(made: Path, tmp_path: Path, na
     np.savez(path, allow_pickle=False, **arrays)
     reseal(path.parent)
     (fault,) = verify(Archive(run))
-    assert fault.startswith("world 1 (seed 1) differs")
+    assert fault.startswith("world 2 (seed 2) differs")
 
 
 @pytest.mark.parametrize("versions", [[], ["jax 1 then, 2 now", "numpy 3 then, 4 now"]])

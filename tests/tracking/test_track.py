@@ -19,18 +19,10 @@ from primordia.tracking.track import Sources, track
 from tests import commands
 from tests.commands import complains, here
 from tests.dashboards import Row, event_rows, offline_runs
-from tests.experiments.meadows import write
-from tests.worlds import MEADOW, config
+from tests.experiments.meadows import herds
+from tests.worlds import HERD, config
 
-SETTINGS: dict[str, Any] = {
-    **MEADOW,
-    "brain": {"kind": "feed-forward", "hidden": 1},
-    "metabolism": {"store": 40.0},
-    "sample_every": 10,
-    "seed": 3,
-    "seeds": 2,
-    "stop": {"ticks": 100},
-}
+SETTINGS: dict[str, Any] = {**HERD, "seed": 3, "stop": {"ticks": 100}}
 AT_ONCE = 1e-9
 """Seconds from one look to the next."""
 
@@ -81,11 +73,11 @@ def test_both_dashboards_show_the_metrics_of_each_world(run: Path, tmp_path: Pat
 def test_a_run_of_wandb_has_the_settings_of_its_world(run: Path, tmp_path: Path) -> None:
     primordia.load(run).track(wandb=tmp_path)
     runs = offline_runs(tmp_path)
-    assert set(runs) == {"seed-3", "seed-4"}
+    assert set(runs) == {"seed-3", "seed-4", "seed-5"}
     about, _ = runs["seed-4"]
     settings = {each.key: json.loads(each.value_json) for each in about.config.update}
     assert settings["seed"] == 4
-    assert settings["metabolism"]["store"] == 40.0
+    assert settings["metabolism"]["store"] == 400.0
     assert (about.run_group, about.project) == ("meadow", "primordia")
 
 
@@ -100,14 +92,14 @@ def test_another_call_replaces_what_was_written(run: Path, tmp_path: Path) -> No
 
 def test_arms_have_folders_and_all_worlds_one_group(tmp_path: Path) -> None:
     out = tmp_path / "out"
-    file = write(tmp_path, seeds=2, jobs={"worlds": 1}, sample_every=50)
-    for job in range(4):
+    file = herds(tmp_path)
+    for job in range(2):
         assert here("experiment", file, "--out", out, "--job", job).returncode == 0
-        assert primordia.load(out).sources().go_on == (job < 3)
+        assert primordia.load(out).sources().go_on == (job < 1)
     primordia.load(out).track(tensorboard=tmp_path, wandb=tmp_path, follow=True)
     runs = offline_runs(tmp_path)
     assert {about.run_group for about, _ in runs.values()} == {"out"}
-    assert len({about.run_id for about, _ in runs.values()}) == len(runs) == 4
+    assert len({about.run_id for about, _ in runs.values()}) == len(runs) == 6
     for arm in ("mild", "harsh"):
         shows(tmp_path, out / arm, f"{arm}/")
 
@@ -144,7 +136,7 @@ def test_rows_that_a_run_repeats_after_a_crash_are_written_once(tmp_path: Path) 
         return Sources({"": [path]}, primordia.load(path).info()["worlds"][0]["ticks"] < last)
 
     track(look, "run", tmp_path, tmp_path, follow=True, every=AT_ONCE, seen=counts.append)
-    assert counts == [20, 24, 30, 30, 40]
+    assert counts == [30, 36, 45, 45, 60]
     shows(tmp_path, path)
 
 
@@ -160,7 +152,7 @@ def test_following_ends_when_the_run_has_stopped(run: Path, tmp_path: Path) -> N
 
         with pytest.raises(KeyboardInterrupt):
             primordia.load(path).track(tmp_path, tmp_path, follow=True, every=AT_ONCE, seen=seen)
-    assert looks == [20] * 3
+    assert looks == [30] * 3
     shows(tmp_path, path)
     done = here("track", path, "--tensorboard", tmp_path, "--follow", "--every", "999")
     assert done.returncode == 0, done.stderr
@@ -200,7 +192,7 @@ def test_a_run_without_a_whole_checkpoint_is_waited_for(run: Path, tmp_path: Pat
         return Sources({"": [path]}, len(looks) < 3)
 
     track(look, "run", tmp_path, follow=True, every=AT_ONCE, seen=seen)
-    assert looks == [0, 0, 20, 20]
+    assert looks == [0, 0, 30, 30]
     assert event_rows(tmp_path / "seed-3") == single(expected(path)[3])
 
 

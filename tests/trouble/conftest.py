@@ -10,7 +10,7 @@ from tests.commands import here
 from tests.trouble import HALF, SMALL, TICKS, digest, interrupt_after
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def through(tmp_path_factory: pytest.TempPathFactory) -> str:
     """Return the digest of the undisturbed run."""
     run = tmp_path_factory.mktemp("through") / "run"
@@ -18,7 +18,7 @@ def through(tmp_path_factory: pytest.TempPathFactory) -> str:
     return digest(run)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def half(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Make a run that was interrupted half-way: two checkpoints, a closed segment and open tails."""
     run = tmp_path_factory.mktemp("half") / "run"

@@ -104,7 +104,7 @@ def test_weights_fill_their_array(run: Path) -> None:
 
 
 @pytest.mark.parametrize("command", READING)
-@pytest.mark.parametrize("tick", [2**50, 2**53 - 1])
+@pytest.mark.parametrize("tick", [pytest.param(2**50, marks=pytest.mark.slow), 2**53 - 1])
 def test_a_last_tick_that_no_run_reaches_breaks_no_figure(
     command: str, tick: int, run: Path, tmp_path: Path
 ) -> None:

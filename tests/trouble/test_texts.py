@@ -23,6 +23,7 @@ from primordia.cli.streams import Printable
 from primordia.errors import InputError
 from primordia.printable import printable
 from tests.commands import COMMAND, complains, environment, here
+from tests.plays import settings_of
 from tests.trouble import SMALL, TASK, TICKS, digest, goes_on
 
 CHARACTERS = "a/.\\:[]{}\"'= \n\r\t\0\x07\x1b\x7f\x9b\u202e\u2028é水😀\ud800\udcff"
@@ -116,6 +117,11 @@ def test_odd_names_are_written_or_refused_with_one_line(
 
 
 FRESH = count()
+OWN = tomli_w.dumps(
+    {**settings_of("cartpole_survival.toml"), "task": "T", "about": "A", "cells": 8,
+     "hazard": 0.002, "sample_every": 500}
+)  # fmt: skip
+"""A task of the user's, in the law of SMALL."""
 
 
 @pytest.fixture(scope="module")
@@ -130,9 +136,8 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @example("\x1b[2J\u202e")
 def test_odd_texts_in_a_file_are_shown_or_refused_with_one_line(place: Path, text: str) -> None:
     file, run = place / "mine.toml", place / f"run{next(FRESH)}"
-    toml = tomli_w.dumps({"task": "T", "habitat": {"name": "cartpole"}, "cells": 8})
     quoted = json.dumps(text).replace("\\ud800", "?").replace("\\udcff", "?")
-    file.write_text(toml.replace('"T"', quoted), encoding="utf-8")
+    file.write_text(OWN.replace('"T"', quoted), encoding="utf-8")
     with chdir(place):
         answers(here("run", file, "--ticks", "5", "--out", run))
         answers(here("run", file, "--ticks", "5", "--quiet"))
@@ -157,7 +162,8 @@ LOCALE = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
 
 def test_files_and_streams_are_in_utf_8_whatever_the_locale(tmp_path: Path) -> None:
     file, run = tmp_path / "mine.toml", tmp_path / "run"
-    file.write_text(f'task = "水\\u001b"\nabout = "é"\ncells = 8\n{HABITAT}', encoding="utf-8")
+    text = OWN.replace('"T"', '"水\\u001b"').replace('"A"', '"é"')
+    file.write_text(text, encoding="utf-8")
     words = ("run", file, "--ticks", "50", "--out", run)
     done = subprocess.run(
         [*COMMAND, *map(str, words)],
@@ -169,9 +175,6 @@ def test_files_and_streams_are_in_utf_8_whatever_the_locale(tmp_path: Path) -> N
     assert done.stdout.decode().startswith("水\\x1b: 1 world")
     assert f"primordia plot {run}\n" in done.stdout.decode()
     assert here("info", run).returncode == 0
-
-
-HABITAT = '[habitat]\nname = "cartpole"\n'
 
 
 def test_streams_that_are_closed_at_the_start_are_not_taken_by_files(

@@ -2,7 +2,6 @@
 
 import json
 import os
-import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +9,7 @@ import pytest
 
 from primordia import config, device
 from primordia.errors import InputError
-from tests.commands import COMMAND, complains, environment, here
+from tests.commands import complains, here, watched
 from tests.trouble import TASK
 
 WRONG = {
@@ -145,8 +144,8 @@ def test_a_pipe_is_not_opened(words: tuple[str, ...], part: str, tmp_path: Path)
     """A command would wait until another program writes into it."""
     pipe, out = tmp_path / "mine.toml", tmp_path / "run"
     os.mkfifo(pipe)
-    command = [*COMMAND, "run", *(word.replace("PIPE", str(pipe)) for word in words), "--out", out]
-    done = subprocess.run(command, env=environment(), capture_output=True, text=True, timeout=120)
+    with watched():
+        done = here("run", *(word.replace("PIPE", str(pipe)) for word in words), "--out", out)
     complains(done, 2, part.replace("PIPE", str(pipe)))
     assert not out.exists()
 

@@ -28,13 +28,31 @@ from primordia.cli.streams import flush, report
 from primordia.cli.variables import check_variables
 from primordia.errors import InputError, Trouble
 
+GROUPS = {
+    "Evolve": ("run", "resume", "fork", "experiment", "tasks", "new", "check"),
+    "Look": ("info", "plot", "report", "watch", "replay", "film"),
+    "Compare": ("compare", "evaluate", "shadow", "assay"),
+    "Descent": ("ancestors", "lines", "lineage"),
+    "Share": ("bundle", "unbundle", "export", "import", "track"),
+    "Trust": ("verify", "revive", "doctor"),
+}
+"""Names of all commands, by what a user wants to do, in the order of the work."""
+
 
 class Commands(click.Group):
-    """A group that lists its commands in the order of a user's work."""
+    """A group that lists its commands under headings."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names of the commands in the order in which they were added."""
         return list(self.commands)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the commands of each group under its heading."""
+        column = max(map(len, self.commands)) + 3
+        for heading, names in GROUPS.items():
+            with formatter.section(heading):
+                rows = [(name, self.commands[name].get_short_help_str(limit=100)) for name in names]
+                formatter.write_dl(rows, col_spacing=column - max(map(len, names)))
 
 
 @click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
@@ -51,24 +69,13 @@ def commands() -> None:
 
 
 PARTS = (
-    evolve,
-    environments,
-    experiment,
-    inspect,
-    page,
-    film,
-    revive,
-    descent,
-    lineage,
-    bundle,
-    track,
-    evaluate,
-    shadow,
-    assays,
-    doctor,
-)
-for command in (each for part in PARTS for each in part.COMMANDS):
-    commands.add_command(command)
+    bundle, descent, doctor, environments, evaluate, evolve, experiment, film, inspect, lineage, page,
+    revive, shadow, track, assays,
+)  # fmt: skip
+made = {command.name: command for part in PARTS for command in part.COMMANDS}
+for names in GROUPS.values():
+    for name in names:
+        commands.add_command(made[name])
 
 
 def execute() -> int:

@@ -43,7 +43,10 @@ def rebuild(run: Records, organism: int, world: int = 0) -> np.ndarray:
 
 def rebuild_all(run: Records, organisms: Sequence[tuple[int, int]]) -> np.ndarray:
     """Return the genomes of K organisms, by birth number and world, float32 (K, P); see `rebuild`."""
-    if run.schema.mates:  # a line of descent has two parents at each step
+    # With mates, a line of descent has two parents at each step. Without, a call replays some births of a
+    # line, or a generation of a pedigree.
+    worlds = len({world for _, world in organisms})
+    if run.schema.mates or len(organisms) > STEPS_AT_A_TIME * worlds:
         return pedigree.genomes(run, np.array([run.lives.row(*each) for each in organisms]))
     device.prepare()
     lineages = [run.lives.take(descent(run.lives, *each)) for each in organisms]

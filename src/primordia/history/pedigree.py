@@ -23,8 +23,9 @@ from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
 from primordia.runs.records import Records
 
-AT_ONCE = 128
-"""Births repeated in one call; the number is fixed, since JAX compiles for every new shape."""
+AT_ONCE, FEW = 128, 4
+"""Births repeated in one call, in large and in small generations; there are two numbers, since JAX
+compiles for every new shape."""
 
 
 def genomes(run: Records, rows: np.ndarray, redrawn: bool = False) -> np.ndarray:
@@ -53,7 +54,8 @@ class _Pedigree:
         self._redraws_notes = redrawn and _inherits_notes(run.heredity.mutation)
         self._repeat = shared(_repeat, run.heredity, self._redraws_notes)
         seeds = wide(run.world_seeds)
-        self._seeds = stream(seeds, Purpose.SHADOW, wide(0)) if redrawn else seeds
+        seeds = stream(seeds, Purpose.SHADOW, wide(0)) if redrawn else seeds
+        self._seeds = seeds.map(np.asarray)  # JAX takes entries ten times as slowly
 
     def genomes(self, rows: np.ndarray) -> np.ndarray:
         """Return the genomes of organisms of one world, (K, P)."""
@@ -124,7 +126,7 @@ class _Pedigree:
         mates: np.ndarray,
     ) -> None:
         """Repeat births, and put the genomes and notes of the newborn into their places."""
-        fill = np.arange(AT_ONCE) % len(rows)
+        fill = np.arange(AT_ONCE if len(rows) > FEW else FEW) % len(rows)
         births, before = self._lives.take(rows[fill]), np.maximum(parents[fill], 0)
         climate = self._past.of_lives(births, births.born)
         genome, own = self._repeat(

@@ -140,8 +140,11 @@ class Lives:
     def champions(self) -> np.ndarray:
         """Return the row of the `oldest` organism of each world with a birth since the run began."""
         rows = np.flatnonzero(self.late())
-        ranked = rows[np.lexsort((self.lifespan[rows], self.world[rows]))]
-        return ranked[np.flatnonzero(np.diff(self.world[ranked], append=-1))]
+        world, lifespan = self.world[rows], self.lifespan[rows]
+        longest = np.zeros(self.worlds, lifespan.dtype)
+        np.maximum.at(longest, world, lifespan)
+        longest_lived = rows[lifespan == longest[world]]
+        return longest_lived[np.flatnonzero(np.diff(self.world[longest_lived], append=-1))]
 
     def row(self, organism: int, world: int = 0) -> int:
         """Return the row of an organism.
@@ -173,8 +176,11 @@ class Lives:
         return find_rows(worlds, numbers, self.world, self.id)
 
     def _rows_of_world(self, world: int) -> slice:
-        first, last = np.searchsorted(self.world, [world, world + 1])
-        return slice(int(first), int(last))
+        # Numbers of another dtype would make NumPy convert all rows.
+        ends = [
+            self.world.dtype.type(min(max(each, 0), self.worlds)) for each in (world, world + 1)
+        ]
+        return slice(*map(int, np.searchsorted(self.world, ends)))
 
 
 def joined(parts: Sequence[Lives], firsts: np.ndarray) -> Lives:

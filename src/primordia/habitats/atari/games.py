@@ -16,7 +16,7 @@ def _ale() -> Any:
         ValueError: it is not installed.
     """
     try:
-        import ale_py
+        import ale_py.roms  # ale_py itself imports it only beside Gymnasium
     except ImportError:
         raise ValueError("Atari games need ale-py: pip install 'primordia[atari]'") from None
     return ale_py
