@@ -24,12 +24,11 @@ from primordia.habitats.contract import Compound, Continuous, Discrete
 from primordia.law.world import Cause
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.settings.tables import tasks
+from tests.habitats import test_atari_lives, test_mujoco_lives
 
 LONG = 10_000
 """Ticks after which a body should have died, so that a test of deaths ends also without them."""
 SIMULATORS = {"atari": "ale_py", "mujoco": "mujoco", "gymnasium": "Box2D"}
-SMALL: dict[str, Any] = {"cells": 6, "seeds": 2, "genesis": "fill", "hazard": 0.003}
-"""Worlds of robots as in the tests of their lives, so that both share their compiled code."""
 SHOWN = {
     "Acrobot-survival",
     "BipedalWalker-forager",
@@ -66,9 +65,9 @@ def test_every_task_is_an_environment_that_gymnasium_accepts(task: str) -> None:
 @pytest.mark.parametrize(
     ("task", "settings"),
     [
-        ("CartPole-survival", {"cells": 16, "seeds": 2}),
-        pytest.param("Pong-survival-forager", SMALL, marks=pytest.mark.slow),
-        ("Reacher-forager-costly", SMALL),
+        pytest.param("CartPole-survival", {"cells": 6, "seeds": 2}, marks=pytest.mark.slow),
+        ("Pong-survival", test_atari_lives.SETTINGS),
+        ("Reacher-forager-costly", test_mujoco_lives.SMALL),
     ],
 )
 def test_a_life_has_the_numbers_that_it_has_in_a_run(
@@ -76,7 +75,8 @@ def test_a_life_has_the_numbers_that_it_has_in_a_run(
 ) -> None:
     """The actions of an organism of a run, taken in the environment, from its birth to its death.
 
-    It lives in the second world, whose seed is the next one, and was born after the first tick.
+    It lives in the second world, whose seed is the next one, and was born after the first tick. The
+    worlds have the law of other tests, which share its compiled code.
     """
     needed(task)
     stop = {"ticks": 300, "until": "none"}
@@ -85,7 +85,7 @@ def test_a_life_has_the_numbers_that_it_has_in_a_run(
     ended = lives.died & (lives.cause != Cause.HAZARD)
     row = np.flatnonzero(ended & (lives.lifespan > 20) & (lives.world == 1) & (lives.born > 0))[0]
     life = RelivedLife.of(run.opened(), int(lives.id[row]), 1)
-    env = LifeEnv(task)
+    env = LifeEnv(task, settings)
     place = {"tick": int(life.record.born[0]), "cell": int(life.record.cell[0])}
     assert place["tick"] > 0
     senses, _ = env.reset(seed=8, options=place)

@@ -62,19 +62,18 @@ def after(run: primordia.Run, tick: int) -> list[dict[str, Any]]:
 
 
 def test_runs_are_exact(pong: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Runs are equal with other workers or none, after resumes, in a fork and lived again.
+    """Runs are equal with workers or none, after a resume, in a fork and lived again.
 
-    A checkpoint that was written with workers is resumed without, and the other way round.
+    A checkpoint that was written with workers is resumed without.
     """
     whole, habitat = primordia.load(pong), {**SETTINGS["habitat"], "workers": None}
     monkeypatch.setenv("PRIMORDIA_CORES", "2")
     parts = primordia.run(
         "Pong-survival", tmp_path / "run", SETTINGS, habitat=habitat, stop={**STOP, "ticks": 90}
     )
-    for cores, ticks in (("1", 170), ("2", 250)):
-        assert of_worlds(parts) != of_worlds(whole)
-        monkeypatch.setenv("PRIMORDIA_CORES", cores)
-        parts.resume(ticks=ticks)
+    assert of_worlds(parts) != of_worlds(whole)
+    monkeypatch.setenv("PRIMORDIA_CORES", "1")
+    parts.resume(ticks=250)
     assert of_worlds(parts) == of_worlds(whole)
     for name in ("births", "deaths", "metrics"):
         assert parts.table(name) == whole.table(name)
@@ -99,7 +98,7 @@ def test_emulators_that_are_free_are_used_again(
     monkeypatch.setattr(simulator, "console", counted)
     found = []
     for name in ("first", "second"):
-        run = primordia.run("Pong-survival", tmp_path / name, SETTINGS, stop={**STOP, "ticks": 120})
+        run = primordia.run("Pong-survival", tmp_path / name, SETTINGS, stop={**STOP, "ticks": 60})
         found.append(of_worlds(run))
         del run
         gc.collect()

@@ -15,20 +15,11 @@ from primordia.habitats.gymnasium.habitat import Gymnasium
 from primordia.testing import check_habitat
 from tests.commands import here
 from tests.ponds import CRASH
-from tests.worlds import Lived, config
+from tests.worlds import HOSTED, Lived, config
 
-LAW: dict[str, Any] = {
-    "cells": 6,
-    "genesis": "fill",
-    "brain": {"hidden": 2},
-    "metabolism": {"store": 9.0, "drain": 0.0, "gain": 1.0, "effort_cost": 1.0, "cap": 100.0},
-    "mutation": {"founder_scale": 0.3},
-    "hazard": 1e-9,
-}
-"""A law in which none starves who makes no effort. All worlds have it, and share its compiled code."""
 POND: dict[str, Any] = {
     "task": "pond",
-    **LAW,
+    **HOSTED,
     "habitat": {
         "name": "gymnasium",
         "env": "tests.ponds:Pond-v0",
@@ -113,7 +104,7 @@ def test_a_simulator_that_writes_to_standard_output_lives_as_a_quiet_one(capfd: 
 
 
 def test_an_error_kills_its_organism_and_leaves_its_last_line(tmp_path: Path, capfd: Any) -> None:
-    settings = {**LAW, "habitat": {"workers": 2}, "stop": {"ticks": 150}}
+    settings = {**HOSTED, "habitat": {"workers": 2}, "stop": {"ticks": 150}}
     run = primordia.run("gym:tests.ponds:Crashing-v0", tmp_path / "run", settings)
     lines = (tmp_path / "run" / "faults.txt").read_text().splitlines()
     deaths = read_table(run.path / "deaths").to_pandas()
@@ -241,7 +232,7 @@ def test_bodies_that_begin_again_are_those_of_the_births(monkeypatch: pytest.Mon
 
 
 def test_where_nothing_can_be_saved_bodies_begin_again_and_that_is_counted(tmp_path: Path) -> None:
-    settings = {**LAW, "habitat": {"workers": 0}, "stop": {"ticks": 30}}
+    settings = {**HOSTED, "habitat": {"workers": 0}, "stop": {"ticks": 30}}
     run = primordia.run("gym:tests.ponds:Hidden-v0", tmp_path / "run", settings)
     before = run.lives()
     assert (run.info()["exact"], run.info()["restarts"]) == (False, 0)

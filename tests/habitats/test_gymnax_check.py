@@ -12,19 +12,20 @@ from primordia.habitats.contract import Continuous, Discrete
 from primordia.habitats.gymnax import check
 from primordia.habitats.gymnax.check import Measured, measure
 from primordia.habitats.gymnax.habitat import Gymnax
+from tests.walks import Overwriting, Undefined
 
 
-@pytest.mark.parametrize(
-    ("name", "faults"),
-    [
-        ("Overwriting", ["an observation is outside the declared space",
-                         "step changes the state that it is given"]),
-        ("Undefined", ["an observation is not finite", "an observation is outside the declared space",
-                       "a reward is not finite"]),
-    ],
-)  # fmt: skip
-def test_what_is_wrong_is_found(name: str, faults: list[str]) -> None:
-    assert measure(Gymnax(env=f"tests.walks:{name}")).faults == faults
+class Ruined(Undefined, Overwriting):
+    """A walk with the faults of both."""
+
+
+def test_what_is_wrong_is_found() -> None:
+    assert measure(Gymnax(env=f"{__name__}:Ruined")).faults == [
+        "an observation is not finite",
+        "an observation is outside the declared space",
+        "a reward is not finite",
+        "step changes the state that it is given",
+    ]
 
 
 def test_functions_that_keep_something_between_calls_are_found() -> None:

@@ -34,10 +34,8 @@ def test_sums_and_matrix_products_do_not_depend_on_the_number_of_bodies() -> Non
         return lax.scan(tick, habitat.reset(words), length=8)[1]
 
     born = words(0, 32, habitat.words)
-    many = jit(lived)(born)
-    for count in (1, 31):
-        for all_, some in zip(many, jit(lived)(born[:count]), strict=True):
-            np.testing.assert_array_equal(all_[:, :count], some)
+    for many, alone in zip(jit(lived)(born), jit(lived)(born[:1]), strict=True):
+        np.testing.assert_array_equal(many[:, :1], alone)
 
 
 def test_sums_and_matrix_products_are_those_of_numpy() -> None:

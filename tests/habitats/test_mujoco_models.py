@@ -3,31 +3,39 @@
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+import tomli_w
 
 import primordia
 from primordia.habitats.mujoco import simulator as mujoco_model
 from tests import commands
 from tests.commands import complains, here
 from tests.robots import MOTOR, SLIDE, born, opened
+from tests.worlds import HOSTED
 
 mujoco = pytest.importorskip("mujoco")
 
-BOX = """
-task = "box"
-cells = 4
-habitat = { name = "mujoco", file = "box.xml", food = "abs(forward)", fatal = "abs(qpos[0]) > 1" }
-stop = { ticks = 20 }
-"""
+BOX: dict[str, Any] = {
+    "task": "box",
+    **HOSTED,
+    "habitat": {
+        "name": "mujoco",
+        "file": "box.xml",
+        "food": "abs(forward)",
+        "fatal": "abs(qpos[0]) > 1",
+    },
+    "stop": {"ticks": 20},
+}
 
 
 def test_a_users_model_lives_and_is_not_resumed_with_another_model(tmp_path: Path) -> None:
     """The model's file lies beside the TOML file that names it."""
     model = tmp_path / "box.xml"
     model.write_text(same := SLIDE.format(actuator=MOTOR))
-    (tmp_path / "box.toml").write_text(BOX)
+    (tmp_path / "box.toml").write_text(tomli_w.dumps(BOX))
     box = primordia.run(str(tmp_path / "box.toml"), tmp_path / "run").path
     info = primordia.load(box).info()
     assert info["worlds"][0]["ticks"] == 20
@@ -45,7 +53,7 @@ def test_a_model_named_by_a_flag_is_found_from_elsewhere(
     (tmp_path / "box.xml").write_text(SLIDE.format(actuator=MOTOR))
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "elsewhere" / "box.toml").write_text(
-        BOX.replace("box.xml", "gymnasium:reacher.xml")
+        tomli_w.dumps(BOX).replace("box.xml", "gymnasium:reacher.xml")
     )
     monkeypatch.chdir(tmp_path)
     habitat = {"file": "box.xml", "scored": {"file": "box.xml"}}

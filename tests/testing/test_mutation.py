@@ -16,7 +16,6 @@ from primordia.random.keys import Purpose
 from primordia.settings.base import Rate
 from primordia.testing import ContractError, check_mutation
 from tests.testing.impure import counted
-from tests.toys import Sliding
 
 
 @pytest.mark.slow  # tests of these mutations do the same with other settings
@@ -31,9 +30,8 @@ def test_a_mutation_must_say_how_it_makes_children_and_founders() -> None:
 
 def test_a_mutation_with_settings_for_the_blocks_of_a_layout() -> None:
     """It is the Gaussian one, whose contract is checked with settings for some blocks and for all."""
-    blocks = {"slide-2": Block(probability=0.0), "0": Block(scale=0.3)}
-    mutation = Gaussian(probability=0.4, blocks=blocks)
-    check_mutation(mutation, Sliding().layout(5, 3))
+    mutation = Gaussian(probability=0.4, blocks={"slide-2": Block(scale=0.3)})
+    check_mutation(mutation, Layout((("slide-2", (3, 2)), ("0", (2,)))))
     with pytest.raises(ContractError, match=r"no block 'slide-2'.*; give check_mutation a layout"):
         check_mutation(mutation)
 
