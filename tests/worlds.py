@@ -67,6 +67,17 @@ RING: dict[str, Any] = {
 }
 """Four small worlds without energy, in which all deaths are accidents, for tests of chances."""
 
+HOSTED: dict[str, Any] = {
+    "cells": 6,
+    "genesis": "fill",
+    "brain": {"hidden": 2},
+    "metabolism": {"store": 9.0, "drain": 0.0, "gain": 1.0, "effort_cost": 1.0, "cap": 100.0},
+    "mutation": {"founder_scale": 0.3},
+    "hazard": 1e-9,
+}
+"""A law for habitats on the host. None starves who makes no effort. Where there are two senses and one
+number to put out, all worlds share its compiled code."""
+
 
 def config(base: str | dict[str, Any] = "CartPole-survival", **settings: Any) -> Config:
     """Return the settings of a task, given by name or as values, with some of them changed."""

@@ -1,6 +1,7 @@
 """Our tasks as Gymnasium environments: the same numbers as in a run, alone and side by side."""
 
 import warnings
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -20,20 +21,27 @@ from primordia.config import load
 from primordia.envs import Forager, LifeEnv, LifeVectorEnv, Survival
 from primordia.envs.bodies import as_rows
 from primordia.habitats.contract import Compound, Continuous, Discrete
+from primordia.law.world import Cause
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.settings.tables import tasks
+from tests.habitats import test_atari_lives, test_mujoco_lives
 
 LONG = 10_000
 """Ticks after which a body should have died, so that a test of deaths ends also without them."""
 SIMULATORS = {"atari": "ale_py", "mujoco": "mujoco", "gymnasium": "Box2D"}
-LIVED = {
-    "CartPole-survival": 300,
-    "Pong-survival-forager": 300,
-    "Reacher-forager-costly": 150,
+SHOWN = {
+    "Acrobot-survival",
+    "BipedalWalker-forager",
+    "CartPole-survival",
+    "Pong-survival-forager",
+    "Reacher-forager",
 }
+"""Tasks of each kind of simulator and of action. The others are slow."""
 
-COSTLY = ("Craftax-Classic-survival", "MinAtar-Asterix-survival")
-"""Tasks whose bodies take long to compile."""
+
+def marked(names: Iterable[str], shown: set[str]) -> list[Any]:
+    """Return names as parameters; those that are not in `shown` are slow."""
+    return [pytest.param(name, marks=() if name in shown else pytest.mark.slow) for name in names]
 
 
 def needed(task: str) -> None:
@@ -41,10 +49,7 @@ def needed(task: str) -> None:
         pytest.importorskip(package)
 
 
-@pytest.mark.parametrize(
-    "task",
-    [pytest.param(task, marks=pytest.mark.slow if task in COSTLY else ()) for task in tasks()],
-)
+@pytest.mark.parametrize("task", marked(tasks(), SHOWN))
 def test_every_task_is_an_environment_that_gymnasium_accepts(task: str) -> None:
     needed(task)
     env = gymnasium.make(f"primordia/{task}-v0")
@@ -58,25 +63,32 @@ def test_every_task_is_an_environment_that_gymnasium_accepts(task: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "task",
+    ("task", "settings"),
     [
-        pytest.param(task, marks=() if task == "CartPole-survival" else pytest.mark.slow)
-        for task in LIVED
+        pytest.param("CartPole-survival", {"cells": 6, "seeds": 2}, marks=pytest.mark.slow),
+        ("Pong-survival", test_atari_lives.SETTINGS),
+        ("Reacher-forager-costly", test_mujoco_lives.SMALL),
     ],
 )
-def test_a_life_has_the_numbers_that_it_has_in_a_run(task: str, tmp_path: Path) -> None:
-    """The actions of an organism of a run, taken in the environment, from its birth to its death."""
+def test_a_life_has_the_numbers_that_it_has_in_a_run(
+    task: str, settings: dict[str, Any], tmp_path: Path
+) -> None:
+    """The actions of an organism of a run, taken in the environment, from its birth to its death.
+
+    It lives in the second world, whose seed is the next one, and was born after the first tick. The
+    worlds have the law of other tests, which share its compiled code.
+    """
     needed(task)
-    stop = {"ticks": LIVED[task], "until": "none"}
-    run = primordia.run(task, tmp_path / "run", cells=6, stop=stop, seed=7)
+    stop = {"ticks": 300, "until": "none"}
+    run = primordia.run(task, tmp_path / "run", settings, stop=stop, seed=7)
     lives = run.lives()
-    dead = np.flatnonzero(lives.died & (lives.lifespan > 20))
-    assert len(dead)
-    number = int(lives.id[dead[0]])
-    life = RelivedLife.of(run.opened(), number)
-    env = LifeEnv(task)
+    ended = lives.died & (lives.cause != Cause.HAZARD)
+    row = np.flatnonzero(ended & (lives.lifespan > 20) & (lives.world == 1) & (lives.born > 0))[0]
+    life = RelivedLife.of(run.opened(), int(lives.id[row]), 1)
+    env = LifeEnv(task, settings)
     place = {"tick": int(life.record.born[0]), "cell": int(life.record.cell[0])}
-    senses, _ = env.reset(seed=7, options=place)
+    assert place["tick"] > 0
+    senses, _ = env.reset(seed=8, options=place)
     for stretch in life.stretches():
         for i, action in enumerate(stretch.action):
             np.testing.assert_array_equal(senses, stretch.senses[i])
@@ -85,6 +97,7 @@ def test_a_life_has_the_numbers_that_it_has_in_a_run(task: str, tmp_path: Path) 
             assert info.get("energy", 0) == (stretch.energy[i] / 1024 if "energy" in info else 0)
             assert (reward, truncated) == (0, False)
     assert died
+    assert life.cause is not None
     assert info["cause"] == life.cause.label
     env.close()
 
@@ -161,10 +174,10 @@ def test_bodies_that_have_died_do_not_change_until_a_reset() -> None:
 
 def test_a_dying_body_keeps_its_own_senses_while_another_is_born() -> None:
     """Poles that are always pushed to one side fall in nine or ten ticks. A newborn pole is upright."""
-    many, over, together = LifeVectorEnv("CartPole-survival", 8), np.zeros(8, bool), 0
+    many, over, together = LifeVectorEnv("CartPole-survival", 3), np.zeros(3, bool), 0
     many.reset(seed=2)
     for _ in range(90):
-        senses, _, ended, _, _ = many.step(np.zeros(8, int))
+        senses, _, ended, _, _ = many.step(np.zeros(3, int))
         assert (np.abs(senses[ended]).max(axis=1) > 0.2).all()
         assert (np.abs(senses[over]) < 0.2).all()
         together += bool(ended.any() and over.any())

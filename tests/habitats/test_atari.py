@@ -1,19 +1,16 @@
-"""Atari games as habitats: their settings, exact runs, and errors in settings."""
+"""Atari games as habitats: their settings, and errors in settings."""
 
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-import primordia
 from primordia.config import load
 from primordia.errors import InputError
 from primordia.habitats.atari import games as atari_games
 from primordia.habitats.atari.games import games
 from primordia.habitats.atari.habitat import Atari
 from primordia.habitats.contract import Discrete
-from primordia.runs.archive import Archive
-from primordia.runs.verify import verify
 from tests.commands import complains, here
 
 pytest.importorskip("ale_py")
@@ -34,46 +31,6 @@ def test_actions_are_those_that_the_settings_name(
     habitat = Atari(game="pong", actions=actions)
     assert habitat.action == Discrete(count)
     assert tuple(habitat._action_names[: len(names)]) == names
-
-
-def test_runs_are_exact(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Runs are equal in chunks, with other workers or none, after a resume, in a fork and lived again.
-
-    A checkpoint that was written with workers is resumed without.
-    """
-    noisy = {"sticky": 0.1, "noops": 5, "frame_skip": 4}
-    settings = {"cells": 4, "hazard": 0.03, "replication": 0.1, "brain": {"hidden": 2}}
-
-    def lived(name: str, ticks: int, workers: int | None) -> primordia.Run:
-        habitat = {**noisy, "workers": workers}
-        stop = {"ticks": ticks, "until": "none"}
-        return primordia.run(
-            "Pong-survival", tmp_path / name, **settings, habitat=habitat, stop=stop
-        )
-
-    def digest(run: primordia.Run) -> str:
-        return str(run.info()["digest"])
-
-    whole, inside = lived("whole", 200, 1), lived("inside", 200, 0)
-    assert whole.info()["births"] > 10
-    assert digest(inside) == digest(whole)
-    monkeypatch.setenv("PRIMORDIA_CORES", "3")
-    half = lived("half", 90, None)
-    assert digest(half) != digest(whole)
-    monkeypatch.setenv("PRIMORDIA_CORES", "1")
-    half.resume(ticks=200)
-    assert digest(half) == digest(whole)
-    for name in ("births", "deaths", "metrics"):
-        assert half.table(name) == whole.table(name)
-    assert verify(Archive(half.path)) == []
-    fork, other = whole.fork(140, tmp_path / "fork"), whole.fork(140, tmp_path / "other", seed=9)
-    assert fork.info()["births"] == whole.info()["births"]
-    assert after(fork, 140) == after(whole, 140) != after(other, 140)
-
-
-def after(run: primordia.Run, tick: int) -> list[dict[str, Any]]:
-    """Return the deaths later than a tick."""
-    return [row for row in run.table("deaths").to_pylist() if row["tick"] > tick]
 
 
 @pytest.mark.parametrize(

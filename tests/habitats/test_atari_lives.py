@@ -1,13 +1,17 @@
-"""Lives in Atari games: lived again bit for bit, and shown on video."""
+"""Lives in Atari games: exact in all runs, lived again bit for bit, and shown on video."""
 
+import gc
+from collections import defaultdict
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
 import av
 import numpy as np
 import pytest
 
 import primordia
+from primordia.habitats.atari import simulator
 from primordia.habitats.atari.games import screen_size
 from primordia.habitats.atari.habitat import SCALED, Atari
 from primordia.habitats.atari.picture import draw
@@ -17,13 +21,15 @@ from primordia.law.world import Cause
 from primordia.organism.reliving.relived import ALONE, RelivedLife
 from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
+from primordia.runs.verify import verify
 from tests.commands import here
 from tests.organism.test_life import at_the_end
 
 pytest.importorskip("ale_py")
 
 SENSES = (51, 49, 54)
-SETTINGS = {
+STOP = {"ticks": 250, "until": "none"}
+SETTINGS: dict[str, Any] = {
     "cells": 6,
     "seeds": 2,
     "genesis": "fill",
@@ -38,13 +44,70 @@ SETTINGS = {
 def pong(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Make a run with sticky buttons, no-ops and hunger; both worlds have lives of all kinds."""
     run = tmp_path_factory.mktemp("pong") / "run"
-    return primordia.run(
-        "Pong-survival", run, **SETTINGS, stop={"ticks": 250, "until": "none"}
-    ).path
+    return primordia.run("Pong-survival", run, SETTINGS, stop=STOP).path
 
 
 def test_the_emulators_version_is_recorded(pong: Path) -> None:
     assert primordia.load(pong).info()["versions"]["ale-py"] == version("ale-py")
+
+
+def of_worlds(run: primordia.Run, what: str = "digest") -> list[Any]:
+    """Return the digest, or the number of something, of each world."""
+    return [world[what] for world in run.info()["worlds"]]
+
+
+def after(run: primordia.Run, tick: int) -> list[dict[str, Any]]:
+    """Return the deaths later than a tick."""
+    return [row for row in run.table("deaths").to_pylist() if row["tick"] > tick]
+
+
+def test_runs_are_exact(pong: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Runs are equal with workers or none, after a resume, in a fork and lived again.
+
+    A checkpoint that was written with workers is resumed without.
+    """
+    whole, habitat = primordia.load(pong), {**SETTINGS["habitat"], "workers": None}
+    monkeypatch.setenv("PRIMORDIA_CORES", "2")
+    parts = primordia.run(
+        "Pong-survival", tmp_path / "run", SETTINGS, habitat=habitat, stop={**STOP, "ticks": 90}
+    )
+    assert of_worlds(parts) != of_worlds(whole)
+    monkeypatch.setenv("PRIMORDIA_CORES", "1")
+    parts.resume(ticks=250)
+    assert of_worlds(parts) == of_worlds(whole)
+    for name in ("births", "deaths", "metrics"):
+        assert parts.table(name) == whole.table(name)
+    assert verify(Archive(parts.path)) == []
+    fork = whole.fork(140, tmp_path / "fork")
+    assert of_worlds(fork, "births") == of_worlds(whole, "births")
+    assert after(fork, 140) == after(whole, 140)
+
+
+def test_emulators_that_are_free_are_used_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A run in them is the same to the last byte of its checkpoints, and makes no new ones."""
+    monkeypatch.setattr(simulator, "_SPARE", defaultdict(list))
+    simulator._start.cache_clear()
+    made, console = list[str](), simulator.console
+
+    def counted(game: str, *settings: Any) -> Any:
+        made.append(game)
+        return console(game, *settings)
+
+    monkeypatch.setattr(simulator, "console", counted)
+    found = []
+    for name in ("first", "second"):
+        run = primordia.run("Pong-survival", tmp_path / name, SETTINGS, stop={**STOP, "ticks": 60})
+        found.append(of_worlds(run))
+        del run
+        gc.collect()
+    assert made == ["pong"] * 12
+    assert found[0] == found[1]
+    first, second = (Archive(tmp_path / name).state for name in ("first", "second"))
+    for name, array in first.items():
+        np.testing.assert_array_equal(array, second[name], name)
+    simulator._start.cache_clear()
 
 
 def some(lives: Lives, which: np.ndarray, count: int) -> list[tuple[int, int]]:
@@ -87,7 +150,10 @@ def test_a_life_lived_again_ends_as_recorded(pong: Path, cause: Cause | None) ->
 
 def test_a_life_is_lived_again_through_a_fork(pong: Path, tmp_path: Path) -> None:
     """The fork has another seed; the emulator, its random state and the score continue unchanged."""
-    fork = Archive(primordia.load(pong).fork(200, tmp_path / "fork", seed=8).path)
+    whole = primordia.load(pong)
+    other = whole.fork(200, tmp_path / "fork", seed=8)
+    assert after(other, 200) != after(whole, 200)
+    fork = Archive(other.path)
     lives = fork.lives
     older = lives.born <= 200
     for organism, world in [*some(lives, older, 3), *some(lives, ~older, 1)]:

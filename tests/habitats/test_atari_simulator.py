@@ -1,36 +1,26 @@
 """Emulators of Atari games: their states, frames, buttons and options, and which emulators are kept."""
 
-import gc
 from collections import defaultdict
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-import primordia
 from primordia.habitats.atari import simulator
 from primordia.habitats.atari.games import games
 from primordia.habitats.atari.habitat import Atari
 from primordia.habitats.atari.simulator import FIELDS, NOOP, SCREEN, Arcade, console
 from primordia.random import dice
-from primordia.runs.archive import Archive
 
 ale_py = pytest.importorskip("ale_py")
 
-PAPERS = ["pong", "boxing", "space_invaders", "battle_zone", "breakout", "freeway"]
-OTHERS = [pytest.param(each, marks=pytest.mark.slow) for each in games() if each not in PAPERS]
 
-each_game = pytest.mark.parametrize(
-    "game",
-    [
-        pytest.param(game, marks=() if game == "boxing" else pytest.mark.slow)
-        for game in [*PAPERS, *OTHERS]
-    ],
-)
+def marked(shown: str) -> list[Any]:
+    """Return all games as parameters; all but one are slow."""
+    return [pytest.param(game, marks=() if game == shown else pytest.mark.slow) for game in games()]
 
 
-@each_game
+@pytest.mark.parametrize("game", marked("boxing"))
 def test_a_cloned_game_continues_as_the_original(game: str) -> None:
     """A game that is cloned, saved and restored has the same RAM and points for 2,000 frames."""
     one, other = console(game), console(game)
@@ -44,35 +34,6 @@ def test_a_cloned_game_continues_as_the_original(game: str) -> None:
         assert np.array_equal(one.getRAM(), other.getRAM()), frame
         assert one.lives() == other.lives()
     assert one.cloneState().serialize() == other.cloneState().serialize()
-
-
-def test_emulators_that_are_free_are_used_again(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A run in them is the same to the last byte of its checkpoints, and makes no new ones."""
-    monkeypatch.setattr(simulator, "_SPARE", defaultdict(list))
-    simulator._start.cache_clear()
-    made: list[str] = []
-
-    def counted(game: str, *settings: Any) -> Any:
-        made.append(game)
-        return console(game, *settings)
-
-    monkeypatch.setattr(simulator, "console", counted)
-    settings: Any = {"cells": 4, "brain": {"hidden": 2}, "habitat": {"workers": 0, "noops": 5}}
-    settings["stop"] = {"ticks": 300, "until": "none"}
-    digests = []
-    for name in ("first", "second"):
-        run = primordia.run("Pong-survival", tmp_path / name, **settings)
-        digests.append(run.info()["digest"])
-        del run
-        gc.collect()
-    assert made == ["pong"] * 4
-    assert digests[0] == digests[1]
-    stored = [Archive(tmp_path / name).state for name in ("first", "second")]
-    for name, array in stored[0].items():
-        np.testing.assert_array_equal(array, stored[1][name], name)
-    simulator._start.cache_clear()
 
 
 def arcade(
@@ -164,7 +125,7 @@ def test_no_ops_are_drawn_from_0_to_the_maximum() -> None:
     assert len(frames) == 4
 
 
-@each_game
+@pytest.mark.parametrize("game", marked("breakout"))
 def test_a_start_after_no_ops_is_the_same_whatever_starts_are_kept(game: str) -> None:
     """Each start equals that of an emulator that has played nothing else, and so does its picture."""
     screen = {SCREEN: ("uint8", console(game).getScreenRGB().shape)}

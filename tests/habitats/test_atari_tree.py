@@ -1,6 +1,7 @@
 """Games without sticky buttons are emulated once: the same lives, from fewer frames."""
 
 from collections import Counter
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,8 @@ PONG: dict[str, Any] = {
     "frame_skip": 1, "sticky": 0.0, "noops": 0,
 }  # fmt: skip
 
-OTHERS = [pytest.param(game, 1, 0, marks=pytest.mark.slow) for game in games()]
+ROOM = [80, 150, 10_000]
+SLOW = [pytest.param(*each, 1, 0, marks=pytest.mark.slow) for each in product(ROOM, games())]
 
 
 def arcade(kind: type[Arcade], **options: Any) -> tuple[Arcade, dict[str, np.ndarray]]:
@@ -60,12 +62,11 @@ def pressed(made: Arcade, arrays: dict[str, np.ndarray], buttons: dict[int, int]
 
 
 @pytest.mark.parametrize(
-    ("game", "skip", "noops"),
-    [("pong", 1, 0), ("breakout", 3, 0), ("pong", 1, 4), *OTHERS],
+    ("positions", "game", "skip", "noops"),
+    [(80, "breakout", 3, 0), (150, "pong", 1, 4), (10_000, "pong", 1, 0), *SLOW],
 )
-@pytest.mark.parametrize("positions", [80, 150, 10_000])
 def test_lives_are_those_of_emulators_that_forget_nothing_and_share_nothing(
-    game: str, positions: int, skip: int, noops: int, monkeypatch: pytest.MonkeyPatch
+    positions: int, game: str, skip: int, noops: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """All rows and saved states are equal, whatever is born, saved and loaded, and when.
 

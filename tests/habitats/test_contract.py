@@ -2,7 +2,6 @@
 
 import subprocess
 import sys
-from pathlib import Path
 from typing import Any, ClassVar
 
 import jax.numpy as jnp
@@ -10,7 +9,6 @@ import numpy as np
 import pytest
 from jax import Array
 
-import primordia
 from primordia.config import validated
 from primordia.errors import InputError
 from primordia.habitats import (
@@ -24,11 +22,10 @@ from primordia.habitats import (
 )
 from primordia.habitats.cartpole.habitat import CartPole
 from primordia.habitats.checks import check_arrays, check_properties
-from primordia.runs import loop
 from primordia.settings.base import Settings
 from tests.commands import environment
 from tests.toys import Clocked, HostCartPole, Meadow, Mirror
-from tests.worlds import MEADOW, config
+from tests.worlds import MEADOW
 
 
 class Still:
@@ -69,21 +66,10 @@ class SettingsFirst(Settings, Still, JaxHabitat):
         return self.size
 
 
-class Forgetful(HostHabitat):
-    """A habitat whose bodies count their ticks and cannot be saved."""
+class Forgetful(HostCartPole):
+    """A habitat whose bodies cannot be saved."""
 
-    senses_size, action, words = 1, Discrete(2), 1
-
-    def open(self, cells: int, watched: bool = False) -> None:
-        self.clock = np.zeros((cells, 1), np.float32)
-
-    def reset(self, born: np.ndarray, words: np.ndarray) -> np.ndarray:
-        self.clock[born] = words % 7
-        return self.clock[born]
-
-    def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
-        self.clock[alive] += 1
-        return self.clock.copy(), Outcome(np.zeros(len(alive), bool))
+    save, load = HostHabitat.save, HostHabitat.load
 
 
 class Proud(Plain):
@@ -208,18 +194,6 @@ def test_no_habitat_lacks_what_has_no_default(kind: type, names: set[str]) -> No
         methods = {name: lambda *given: None for name in names - {lacking}}
         with pytest.raises(TypeError, match=f"abstract method '?{lacking}'?$"):
             type("Partly", (kind,), {"senses_size": 1, **methods})()
-
-
-@pytest.mark.slow
-def test_bodies_that_cannot_be_saved_start_again_after_a_resume(tmp_path: Path) -> None:
-    """A resumed run continues with bodies as they were at birth, and says that it is not exact."""
-    habitat, run = {"name": f"{__name__}:Forgetful"}, tmp_path / "run"
-    loop.start(config(MEADOW, habitat=habitat, hazard=0.01, stop={"ticks": 60}), run)
-    assert primordia.load(run).info()["exact"] is False
-    loop.resume(run, {"ticks": 90})
-    info = primordia.load(run).info()
-    assert info["ticks"] == 90
-    assert info["deaths"] > 0
 
 
 def test_the_contract_and_simulators_do_not_load_jax() -> None:

@@ -126,7 +126,7 @@ def test_environments_that_come_with_gymnasium_go_on_from_their_state(name: str)
     assert measure(name, {}, ()).saving == "snapshot"
 
 
-@pytest.mark.parametrize("name", ["Hopper-v5", "Reacher-v5"])
+@pytest.mark.parametrize("name", ["Hopper-v5", pytest.param("Reacher-v5", marks=pytest.mark.slow)])
 def test_robots_go_on_from_their_state(name: str) -> None:
     pytest.importorskip("mujoco")
     assert measure(name, {}, ()).saving == "snapshot"

@@ -15,19 +15,17 @@ from primordia.habitats.gymnasium.habitat import Gymnasium
 from primordia.testing import check_habitat
 from tests.commands import here
 from tests.ponds import CRASH
-from tests.worlds import Lived, config
+from tests.worlds import HOSTED, Lived, config
 
 POND: dict[str, Any] = {
     "task": "pond",
+    **HOSTED,
     "habitat": {
         "name": "gymnasium",
         "env": "tests.ponds:Pond-v0",
         "saving": "snapshot",
         "workers": 0,
     },
-    "cells": 6,
-    "genesis": "fill",
-    "brain": {"hidden": 2},
 }
 
 
@@ -40,7 +38,7 @@ def pond(name: str = "Pond", **habitat: Any) -> dict[str, Any]:
     ("name", "settings"),
     [
         ("Pond", {"saving": "snapshot", "time_limit": 9, "workers": 0}),
-        ("Pond", {"saving": "replay", "workers": 2}),
+        pytest.param("Pond", {"saving": "replay", "workers": 2}, marks=pytest.mark.slow),
         ("Pond", {"saving": "restart", "time_limit": 7, "workers": 0}),
         ("Odd", {"saving": "snapshot", "squash": True, "scale": (50.0,), "workers": 0}),
         ("Closed", {"saving": "replay", "workers": 0}),
@@ -75,8 +73,7 @@ def test_death_food_effort_and_time_limit_are_settings() -> None:
     """Food by age: 2 + 4 + 6 + 8 until the limit at 4 ticks; effort is 1 a tick."""
     for food in ('2 * info["age"]', "tests.ponds:food"):
         habitat = pond(food=food, effort="1", time_limit=4, fatal="obs[0] > 100")
-        hunger = {"store": 9.0, "drain": 0.0, "gain": 1.0, "effort_cost": 1.0, "cap": 100.0}
-        lived = Lived(config(habitat, metabolism=hunger, replication=0.0), 4)
+        lived = Lived(config(habitat, replication=0.0), 4)
         deaths = lived.table("deaths")
         assert set(deaths["cause"]) == {"time-limit"}
         np.testing.assert_array_equal(deaths["food"], 20.0)
@@ -107,7 +104,7 @@ def test_a_simulator_that_writes_to_standard_output_lives_as_a_quiet_one(capfd: 
 
 
 def test_an_error_kills_its_organism_and_leaves_its_last_line(tmp_path: Path, capfd: Any) -> None:
-    settings = {"cells": 6, "habitat": {"workers": 2}, "stop": {"ticks": 150}}
+    settings = {**HOSTED, "habitat": {"workers": 2}, "stop": {"ticks": 150}}
     run = primordia.run("gym:tests.ponds:Crashing-v0", tmp_path / "run", settings)
     lines = (tmp_path / "run" / "faults.txt").read_text().splitlines()
     deaths = read_table(run.path / "deaths").to_pandas()
@@ -235,7 +232,7 @@ def test_bodies_that_begin_again_are_those_of_the_births(monkeypatch: pytest.Mon
 
 
 def test_where_nothing_can_be_saved_bodies_begin_again_and_that_is_counted(tmp_path: Path) -> None:
-    settings = {"cells": 6, "habitat": {"workers": 0}, "stop": {"ticks": 30}}
+    settings = {**HOSTED, "habitat": {"workers": 0}, "stop": {"ticks": 30}}
     run = primordia.run("gym:tests.ponds:Hidden-v0", tmp_path / "run", settings)
     before = run.lives()
     assert (run.info()["exact"], run.info()["restarts"]) == (False, 0)

@@ -37,7 +37,8 @@ def lived(habitat: Gymnax, ticks: int, action: Any = STILL) -> tuple[Any, list[A
     return bodies, outcomes
 
 
-@pytest.mark.parametrize("name", ["Walk", pytest.param("Choice", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["Walk", "Choice", "Turning"])
 def test_an_environment_of_ones_own_keeps_the_contract(name: str) -> None:
     check_habitat(Gymnax(env=f"tests.walks:{name}", food="reward", squash=True))
 

@@ -24,26 +24,24 @@ WORDS = np.random.default_rng(5).integers(2**32, size=(6, 2), dtype=np.uint32)
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param("Asterix-MinAtar", marks=pytest.mark.slow), "Breakout-MinAtar"]
+    "name", ["Breakout-MinAtar", pytest.param("Asterix-MinAtar", marks=pytest.mark.slow)]
 )
 def test_a_life_is_what_the_library_computes(name: str) -> None:
     habitat, (env, params) = Gymnax(env=name, food="reward"), gymnax.make(name)
     with jax.threefry_partitionable(True):
         folded = jax.vmap(jax.random.fold_in, (0, None))
-        seen, state = jax.vmap(env.reset_env, (0, None))(folded(WORDS, 0), params)
-        bodies = habitat.reset(WORDS)
+        begin = jax.jit(jax.vmap(env.reset_env, (0, None)))
+        go_on = jax.jit(jax.vmap(env.step_env, (0, 0, 0, None)))
+        reset, step, sense = map(jax.jit, (habitat.reset, habitat.step, habitat.sense))
+        seen, state = begin(folded(WORDS, 0), params)
+        bodies = reset(WORDS)
         for age in range(1, 12):
             action = np.full(6, age % habitat.action.size, np.int32)
-            step = jax.vmap(env.step_env, (0, 0, 0, None))
-            seen, state, reward, done, _ = step(folded(WORDS, age), state, action, params)
-            bodies, outcome = habitat.step(bodies, action)
-            np.testing.assert_array_equal(habitat.sense(bodies), seen.reshape(6, -1))
+            seen, state, reward, done, _ = go_on(folded(WORDS, age), state, action, params)
+            bodies, outcome = step(bodies, action)
+            np.testing.assert_array_equal(sense(bodies), seen.reshape(6, -1))
             np.testing.assert_array_equal(outcome.fatal, done)
             np.testing.assert_array_equal(outcome.food, reward)
-
-
-def test_a_body_in_pendulum_has_the_same_bits_in_all_programs() -> None:
-    check_habitat(Gymnax(env="Pendulum-v1", food="reward"))
 
 
 @pytest.mark.slow
@@ -59,15 +57,10 @@ def test_craftax_keeps_the_contract(name: str) -> None:
     check_habitat(Gymnax(env=name, food="reward"))
 
 
-@pytest.mark.slow
 def test_a_task_is_made_from_lives_at_random() -> None:
     task = values("CartPole-v1")
     assert 1 / 40 < task["replication"] < 1 / 15
-    endless = values("Pendulum-v1")
-    assert endless["replication"] == 0.002
-    assert endless["habitat"] == {"name": "gymnax", "env": "Pendulum-v1", "fatal": "done"}
-    for table in (task, endless):
-        assert validated(table, source="test").build_habitat().env in table["about"]
+    assert validated(task, source="test").build_habitat().env in task["about"]
 
 
 def test_what_is_known_of_an_environment_is_said() -> None:
@@ -91,12 +84,11 @@ def test_a_name_that_is_not_known_suggests_one() -> None:
         values("Craftax-Symbolik-v1")
 
 
-@pytest.mark.parametrize("task", ["MinAtar-Breakout-survival", "MinAtar-Asterix-survival"])
-def test_players_act_and_perceive_the_grid(task: str) -> None:
-    habitat: Any = load(task).build_habitat()
+def test_players_act_and_perceive_the_grid() -> None:
+    habitat: Any = load("MinAtar-Breakout-survival").build_habitat()
     assert habitat.senses_size == 400
     assert set(habitat.versions) == {"gymnax", "flax"}
-    body = jax.tree.map(lambda leaf: np.asarray(leaf)[0], habitat.reset(WORDS))
+    body = jax.tree.map(lambda leaf: np.asarray(leaf)[0], jax.jit(habitat.reset)(WORDS))
     assert len(habitat.picture(body, np.int32(0)).getcolors()) >= 3
 
 
@@ -113,7 +105,7 @@ def test_a_life_is_drawn_by_its_library_or_as_it_is_sensed(
     name: str, size: tuple[int, int], capfd: pytest.CaptureFixture[str]
 ) -> None:
     habitat = Gymnax(env=name)
-    body = jax.tree.map(lambda leaf: np.asarray(leaf)[0], habitat.reset(WORDS))
+    body = jax.tree.map(lambda leaf: np.asarray(leaf)[0], jax.jit(habitat.reset)(WORDS))
     picture = habitat.picture(body, np.int32(0))
     assert picture.size == (size[0], size[1] + MARGIN)
     assert len(picture.getcolors(maxcolors=100_000)) >= 3

@@ -4,12 +4,12 @@ from typing import Any
 
 import jax
 import numpy as np
-import pytest
 from jax import lax
 
+from primordia.compiled import jit
 from primordia.habitats.gymnax.habitat import Gymnax
 from primordia.habitats.gymnax.sums import ordered
-from primordia.testing import check_habitat
+from primordia.random.trials import words
 
 
 def test_a_sum_over_nothing_is_zero_and_nothing_has_no_sums() -> None:
@@ -23,9 +23,19 @@ def test_a_sum_over_nothing_is_zero_and_nothing_has_no_sums() -> None:
     np.testing.assert_array_equal(ordered(lambda a: a.T @ a)(a), np.zeros((3, 3)))
 
 
-@pytest.mark.slow
 def test_sums_and_matrix_products_do_not_depend_on_the_number_of_bodies() -> None:
-    check_habitat(Gymnax(env="tests.walks:Turning"))
+    habitat = Gymnax(env="tests.walks:Turning", food="reward")
+
+    def lived(words: Any) -> Any:
+        def tick(bodies: Any, _: None) -> Any:
+            bodies, outcome = habitat.step(bodies, np.zeros((len(words), 2), np.float32))
+            return bodies, (habitat.sense(bodies), outcome.food)
+
+        return lax.scan(tick, habitat.reset(words), length=8)[1]
+
+    born = words(0, 32, habitat.words)
+    for many, alone in zip(jit(lived)(born), jit(lived)(born[:1]), strict=True):
+        np.testing.assert_array_equal(many[:, :1], alone)
 
 
 def test_sums_and_matrix_products_are_those_of_numpy() -> None:

@@ -1,12 +1,10 @@
 """Robots: equal to Gymnasium's environments step for step; births, targets, deaths and failures."""
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-import primordia
 from primordia.config import load
 from primordia.habitats.contract import Outcome
 from tests.robots import born, of_task, opened
@@ -100,18 +98,6 @@ def test_scores_are_gymnasiums(task: str, name: str, tolerance: float) -> None:
             ours -= env._healthy_reward
             break
     assert ours == pytest.approx(paid, rel=tolerance, abs=tolerance)
-
-
-@pytest.mark.slow
-def test_evaluations_are_cut_where_gymnasium_cuts(tmp_path: Path) -> None:
-    settings = {"cells": 4, "genesis": "fill", "stop": {"ticks": 30, "until": "none"}}
-    run = primordia.run("HalfCheetah-forager", tmp_path / "run", **settings)
-    evaluation = run.oldest().evaluate(games=3, ticks=1200)
-    assert evaluation.whole is not None
-    assert evaluation.whole.ticks.tolist() == [1000] * 3
-    assert (evaluation.games, evaluation.distinct) == (3, 3)
-    assert 0 < evaluation.lived.ticks.max() <= 1200
-    assert evaluation.lived.over.all()
 
 
 def test_our_reacher_has_no_lag() -> None:

@@ -18,29 +18,39 @@ from tests.robots import born, of_task
 
 pytest.importorskip("mujoco")
 
-SETTINGS: dict[str, Any] = {"cells": 6, "seeds": 2, "genesis": "fill", "hazard": 0.003}
+SMALL: dict[str, Any] = {"cells": 6, "seeds": 2, "genesis": "fill", "hazard": 0.003}
+MOVING = {"food": "0.2 * abs(com_forward)"}
+"""Food that is measured from the place of a body in the tick before."""
 
 
 @pytest.fixture(scope="module")
 def reachers(tmp_path_factory: pytest.TempPathFactory) -> Path:
     run = tmp_path_factory.mktemp("reachers") / "run"
-    return primordia.run(
-        "Reacher-forager-costly", run, **SETTINGS, stop={"ticks": 260, "until": "none"}
-    ).path
+    stop = {"ticks": 260, "until": "none"}
+    return primordia.run("Reacher-forager-costly", run, **SMALL, habitat=MOVING, stop=stop).path
 
 
-@pytest.mark.parametrize(
-    "task", ["Reacher-forager-costly", pytest.param("Humanoid-forager", marks=pytest.mark.slow)]
-)
-def test_a_run_that_was_stopped_continues_exactly(task: str, tmp_path: Path) -> None:
+def digests(run: primordia.Run) -> list[str]:
+    return [world["digest"] for world in run.info()["worlds"]]
+
+
+def test_a_run_that_was_stopped_continues_exactly(reachers: Path, tmp_path: Path) -> None:
     """This holds also where food is measured from the body's place before the stop."""
-    digests = []
-    for name, first in (("whole", 160), ("parts", 67)):
-        stop = {"ticks": first, "until": "none"}
-        run = primordia.run(task, tmp_path / name, **SETTINGS, stop=stop)
-        run.resume(ticks=160)
-        digests.append([world["digest"] for world in run.info()["worlds"]])
-    assert digests[0] == digests[1]
+    stop = {"ticks": 67, "until": "none"}
+    run = primordia.run(
+        "Reacher-forager-costly", tmp_path / "run", **SMALL, habitat=MOVING, stop=stop
+    )
+    run.resume(ticks=260)
+    assert digests(run) == digests(primordia.load(reachers))
+
+
+def test_evaluations_are_cut_where_gymnasium_cuts(reachers: Path) -> None:
+    evaluation = primordia.load(reachers).oldest().evaluate(games=3, ticks=400)
+    assert evaluation.whole is not None
+    assert evaluation.whole.ticks.tolist() == [50] * 3
+    assert (evaluation.games, evaluation.distinct) == (3, 3)
+    assert 50 < evaluation.lived.ticks.max() <= 400
+    assert evaluation.lived.over.all()
 
 
 def test_lives_are_lived_again_through_a_fork(reachers: Path, tmp_path: Path) -> None:

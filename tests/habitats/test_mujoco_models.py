@@ -3,43 +3,43 @@
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+import tomli_w
 
 import primordia
 from primordia.habitats.mujoco import simulator as mujoco_model
 from tests import commands
 from tests.commands import complains, here
 from tests.robots import MOTOR, SLIDE, born, opened
+from tests.worlds import HOSTED
 
 mujoco = pytest.importorskip("mujoco")
 
-BOX = """
-task = "box"
-cells = 4
-habitat = { name = "mujoco", file = "box.xml", food = "abs(forward)", fatal = "abs(qpos[0]) > 1" }
-stop = { ticks = 20 }
-"""
+BOX: dict[str, Any] = {
+    "task": "box",
+    **HOSTED,
+    "habitat": {
+        "name": "mujoco",
+        "file": "box.xml",
+        "food": "abs(forward)",
+        "fatal": "abs(qpos[0]) > 1",
+    },
+    "stop": {"ticks": 20},
+}
 
 
-@pytest.fixture
-def box(tmp_path: Path) -> Path:
-    """Make a run of a model whose file lies beside the TOML file that names it."""
-    (tmp_path / "box.xml").write_text(SLIDE.format(actuator=MOTOR))
-    (tmp_path / "box.toml").write_text(BOX)
-    return primordia.run(str(tmp_path / "box.toml"), tmp_path / "run").path
-
-
-def test_a_users_model_lives(box: Path) -> None:
+def test_a_users_model_lives_and_is_not_resumed_with_another_model(tmp_path: Path) -> None:
+    """The model's file lies beside the TOML file that names it."""
+    model = tmp_path / "box.xml"
+    model.write_text(same := SLIDE.format(actuator=MOTOR))
+    (tmp_path / "box.toml").write_text(tomli_w.dumps(BOX))
+    box = primordia.run(str(tmp_path / "box.toml"), tmp_path / "run").path
     info = primordia.load(box).info()
     assert info["worlds"][0]["ticks"] == 20
     assert info["versions"]["mujoco"] == mujoco.__version__
-
-
-def test_a_run_is_not_resumed_with_another_model(box: Path) -> None:
-    model = box.parent / "box.xml"
-    same = model.read_text()
     model.write_text(same.replace("0.1", "0.2"))
     complains(here("resume", box, "--ticks", 30), 2, "box.xml has changed", "--inexact")
     model.write_text(same)
@@ -47,15 +47,17 @@ def test_a_run_is_not_resumed_with_another_model(box: Path) -> None:
     assert primordia.load(box).info()["worlds"][0]["ticks"] == 30
 
 
-@pytest.mark.slow
 def test_a_model_named_by_a_flag_is_found_from_elsewhere(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "box.xml").write_text(SLIDE.format(actuator=MOTOR))
-    monkeypatch.chdir(tmp_path)
-    habitat = {"file": "box.xml", "senses": ["qpos"], "scored": {"file": "box.xml"}}
-    run = primordia.run("HalfCheetah-forager", "run", habitat=habitat, cells=2, stop={"ticks": 5})
     (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "elsewhere" / "box.toml").write_text(
+        tomli_w.dumps(BOX).replace("box.xml", "gymnasium:reacher.xml")
+    )
+    monkeypatch.chdir(tmp_path)
+    habitat = {"file": "box.xml", "scored": {"file": "box.xml"}}
+    run = primordia.run("elsewhere/box.toml", "run", habitat=habitat, stop={"ticks": 5})
     monkeypatch.chdir(tmp_path / "elsewhere")
     run = primordia.load(tmp_path / run.path)
     assert run.resume(ticks=8) == []

@@ -118,6 +118,7 @@ def test_flags_override_the_file_and_the_file_overrides_the_task(tmp_path: Path)
     flags = (
         "--cells", "8", "--mutation.scale=0.125", "--ticks", "2", "--until", "none",
         "--placement.rule", "empty-only",
+        "--brain.biases", "true", "--mutation.blocks.input_bias.scale", "0.5",
         '--seasons=[{kind="schedule",setting="hazard",at=9,value=0}]',
     )  # fmt: skip
     done = here("run", file, *flags, "--out", run, "--quiet")
@@ -127,7 +128,8 @@ def test_flags_override_the_file_and_the_file_overrides_the_task(tmp_path: Path)
     assert (config.mutation["scale"], config.mutation["probability"]) == (0.125, 0.25), "flag, file"
     assert (config.stop.ticks, config.stop.until) == (2, None), "flags"
     assert config.placement.rule == "empty-only"
-    assert config.brain["hidden"] == 4, "file"
+    assert config.brain == {"kind": "recurrent", "hidden": 4, "biases": True}, "file, flag"
+    assert config.mutation["blocks"]["input_bias"]["scale"] == 0.5, "a flag of a block"
     assert config.mutation["founder_scale"] == tasks()[TASK]["mutation"]["founder_scale"], "task"
     assert config.seasons == (Schedule(kind="schedule", setting="hazard", at=9, value=0.0),)
     assert json.loads(here("info", run, "--json").stdout)["ticks"] == 2

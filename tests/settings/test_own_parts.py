@@ -94,13 +94,15 @@ class Pond(HostHabitat, Settings):
         pass
 """
 
-TEXTS = {
-    "in JAX": (POND, ("--habitat.name", "pond:Pond")),
-    "on the host": (HOST, ("--habitat.name", "pond:Pond")),
-    "brain": (BRAIN, ("--brain.kind", "pond:Mind")),
-    "mutation": (MUTATION, ("--mutation.kind", "pond:Still")),
+POND_IS, MIND_IS, STILL_IS = {"name": "pond:Pond"}, {"kind": "mind:Mind"}, {"kind": "still:Still"}
+TEXTS: dict[str, tuple[str, dict[str, dict[str, str]]]] = {
+    "in JAX": (POND, {"habitat": POND_IS}),
+    "on the host": (HOST, {"habitat": POND_IS, "brain": MIND_IS, "mutation": STILL_IS}),
+    "brain": (BRAIN, {"brain": {"kind": "pond:Mind"}}),
+    "mutation": (MUTATION, {"mutation": {"kind": "pond:Still"}}),
 }
-"""A text of each kind of part that works, and the words that choose it."""
+"""A text of each kind of part that works, and the tables that choose it. Runs in ponds on the host have
+brains and mutations of the user's own too."""
 
 SENSE, ACTION, WORDS = "return bodies\n", "Discrete = Discrete(2)", "words: int = 1"
 THINK = """return memory, (genome["output"] * senses[:, None]).sum(axis=2)"""
@@ -162,18 +164,23 @@ CASES = [(kind, *fault) for kind, faults in FAULTS.items() for fault in faults]
 
 @pytest.fixture
 def pond(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Return the file of a module that no test before has imported."""
+    """Return the file of a module that no test before has imported, beside a brain and a mutation."""
     monkeypatch.chdir(tmp_path)
-    sys.modules.pop("pond", None)
-    own_code._admitted.sources.pop("pond", None)
+    for name in ("pond", "mind", "still"):
+        sys.modules.pop(name, None)
+        own_code._admitted.sources.pop(name, None)
+    Path("mind.py").write_text(BRAIN)
+    Path("still.py").write_text(MUTATION)
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
     return tmp_path / "pond.py"
 
 
 def begun(kind: str) -> Any:
     """Begin a run with the part in the file pond.py."""
+    tables = TEXTS[kind][1].items()
+    parts = [f"--{part}.{key}={name}" for part, own in tables for key, name in own.items()]
     words = ("--cells", 4, "--ticks", 9, "--quiet", "--out", "run")
-    return here("run", "CartPole-survival", *TEXTS[kind][1], *words)
+    return here("run", "CartPole-survival", *parts, *words)
 
 
 @pytest.mark.parametrize(("kind", "before", "after", "says"), CASES)
@@ -188,12 +195,16 @@ def test_a_part_that_does_not_work_is_named(
     assert not Path("run").exists()
 
 
-@pytest.mark.parametrize(
-    "kind", ["in JAX", *(pytest.param(k, marks=pytest.mark.slow) for k in TEXTS if k != "in JAX")]
-)
-def test_a_part_that_works_is_lived_with(kind: str, pond: Path) -> None:
-    pond.write_text(TEXTS[kind][0])
-    done = begun(kind)
+@pytest.mark.parametrize("kind", TEXTS)
+def test_a_part_that_works_is_admitted(kind: str, pond: Path) -> None:
+    text, tables = TEXTS[kind]
+    pond.write_text(text)
+    assert tables.items() <= config.load("CartPole-survival", tables).model_dump().items()
+
+
+def test_parts_that_work_are_lived_with(pond: Path) -> None:
+    pond.write_text(HOST)
+    done = begun("on the host")
     assert (done.returncode, done.stderr) == (0, "")
 
 
@@ -217,7 +228,6 @@ def test_a_habitat_that_ends_the_process_is_reported(pond: Path) -> None:
     complains(begun("on the host"), 1, "the run's code has ended the process: exit(3)")
 
 
-@pytest.mark.slow
 def test_an_environment_of_a_library_is_not_traced_before_a_run(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -227,4 +237,5 @@ def test_an_environment_of_a_library_is_not_traced_before_a_run(
         pytest.fail("the environment was traced")
 
     monkeypatch.setattr(config, "check_arrays", traced)
-    config.load("gymnax:gymnax:Catch-bsuite")
+    table = {"name": "gymnax", "env": "Catch-bsuite"}
+    config.validated({"task": "catch", "habitat": table}, source="test")
