@@ -1,7 +1,6 @@
 """Promise 2 when lists are full: whatever happens in one tick, no birth, death or sample is lost."""
 
 from functools import partial
-from typing import Any
 
 import jax
 import jax.numpy as jnp

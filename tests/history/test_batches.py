@@ -9,7 +9,7 @@ import pytest
 from primordia.errors import Trouble
 from primordia.history import lineage as lines
 from primordia.history import pedigree
-from primordia.history.lineage import changes, rebuild_all
+from primordia.history.lineage import changes, descent, rebuild_all
 from primordia.history.pedigree import genomes
 from primordia.random.wide import to_host
 from primordia.runs.lives import joined
@@ -54,7 +54,8 @@ def a_run(mates: np.ndarray | None = None) -> Any:
 
 @pytest.fixture(autouse=True)
 def at_once(monkeypatch: pytest.MonkeyPatch) -> int:
-    """Repeat three births in one call: generations have up to six, and lines up to ten."""
+    """Repeat three births in one call, or one: generations have up to six, and lines up to ten."""
+    monkeypatch.setattr(pedigree, "FEW", 1)
     for module, name in ((pedigree, "AT_ONCE"), (lines, "STEPS_AT_A_TIME")):
         monkeypatch.setattr(module, name, 3)
         monkeypatch.setattr(module, "PastClimate", lambda _: SimpleNamespace(of_lives=climate_of))
@@ -75,7 +76,7 @@ def test_each_birth_of_a_pedigree_has_its_own_parents_and_notes(
     def repeat(counts: tuple, marks: tuple, climate: dict, of: tuple, notes: np.ndarray) -> Any:
         (seed, number, tick), (cell, founder) = counts, marks
         number = to_host(number).astype(int)
-        assert len(number) == at_once
+        assert len(number) in {1, at_once}
         assert number.tolist() == to_host(tick).tolist() == cell.tolist()
         world = climate["any"] // 100
         assert (climate["any"] % 100).tolist() == number.tolist()
@@ -133,3 +134,9 @@ def test_a_mate_that_was_not_born_before_its_child_is_damage(organism: int, mate
     mates[organism] = mate
     with pytest.raises(Trouble, match=f"the mate of organism {organism} was not born before it"):
         genomes(a_run(mates), np.array([12]))
+
+
+def test_a_line_of_descent_begins_with_its_last_founder() -> None:
+    """Without heredity, children are founders that have a mother."""
+    line = lives((-1, FOUNDER, 9), (0, COPY, 9), (1, FOUNDER, 9), (2, MUTANT, 9), (3, COPY, 9))
+    assert [descent(line, last, 0).tolist() for last in (1, 2, 4)] == [[0, 1], [2], [2, 3, 4]]
