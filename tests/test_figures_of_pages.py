@@ -63,7 +63,7 @@ def _fill() -> Iterator[ModuleType]:
 
 @pytest.fixture(scope="module")
 def filled(fill: ModuleType) -> dict[Path, str]:
-    """All pages, filled anew; for speed each task's settings are read once."""
+    """Return the text that each page should have. The settings of each task are read once, for speed."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(config, "load", cache(config.load))
         pages: dict[Path, str] = fill.pages()

@@ -30,7 +30,7 @@ def texts(outputs: list[dict[str, Any]]) -> list[str]:
 def test_a_notebook_gives_what_stands_in_its_file(
     path: Path, most: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """At most so many cells: the first ones need neither figures nor films of ours."""
+    """Execute at most `most` cells. The first two cells draw no figure and show no film."""
     monkeypatch.syspath_prepend(str(HERE / "notebooks"))
     notebook = json.loads(path.read_text(encoding="utf-8"))
     every = [cell for cell in notebook["cells"] if cell["cell_type"] == "code"]

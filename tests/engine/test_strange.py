@@ -118,7 +118,6 @@ def test_each_world_is_the_same_alone(settings: dict[str, Any], whole: Lived) ->
 
 
 @pytest.mark.slow
-@pytest.mark.xfail(strict=True, reason="founders keep moments of another world, unused and unknown")
 def test_a_world_that_died_out_is_the_same_alone() -> None:
     rare = {"replication": 0.5, "hazard": 0.1}
     births = (together := Lived(config(STRANGE, **rare), TICKS)).table("births")

@@ -142,7 +142,7 @@ def test_a_run_with_nothing_left_to_do_says_how_to_continue(run: Path, through: 
 
 
 def test_saturated_worlds_continue_without_the_limit_of_saturation(tmp_path: Path) -> None:
-    """Nobody dies in this meadow, and no accident is likely."""
+    """No body dies in this meadow, and accidents are very rare."""
     run = tmp_path / "run"
     stop = {"ticks": 300, "until": "saturation"}
     loop.start(config({**SHARED, "seeds": 2, "hazard": 1e-6, "stop": stop}), run)

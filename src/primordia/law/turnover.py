@@ -176,10 +176,18 @@ def _inherit(
 
 
 def _of_children(moments: Remembered | None, founder: Array) -> Remembered | None:
-    """Return the first moments of newborn (K,): their parents' moments, or none for founders."""
+    """Return the first moments of newborn (K,): their parents' moments, or none for founders.
+
+    Of a founder's moments all numbers are 0, since the cell that stands for its parent may be in another
+    world.
+    """
     if moments is None:
         return None
-    return moments._replace(known=moments.known & ~founder[:, None])
+
+    def first(leaf: Array) -> Array:
+        return jnp.where(founder.reshape(-1, *[1] * (leaf.ndim - 1)), jnp.zeros_like(leaf), leaf)
+
+    return jax.tree.map(first, moments)
 
 
 def _birth(law: Law, worlds: Worlds, births: Births, keys: Streams, cells: Array) -> Birth:
