@@ -83,5 +83,5 @@ if __name__ == "__main__":
     )
     with tempfile.TemporaryDirectory() as folder:
         forge(Path(folder, "run"), births, cells)
-        for command in ("info", "ancestors", "lines", "report"):
+        for command in ("info", "ancestors", "lineages", "report"):
             measure(Path(folder, "run"), command)

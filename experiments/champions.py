@@ -14,7 +14,7 @@ import named
 
 import primordia
 from primordia.brains import genomes
-from primordia.history.lineage import rebuild_all
+from primordia.history.rebuilding import rebuild_all
 
 
 def report(file: Path) -> None:

@@ -16,7 +16,7 @@ from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs.archive import Archive
 from primordia.testing import check_brain, check_habitat, check_mutation
 from tests.commands import here
-from tests.history.test_lineage import assert_rebuilt
+from tests.history.test_rebuilding import assert_rebuilt
 
 TASK = "CartPole-survival"
 SEASON = '{kind = "schedule", setting = "mutation.scale", at = 150, value = 0.02}'

@@ -49,9 +49,9 @@ def test_columns_of_a_run_are_those_of_the_page(name: str) -> None:
     assert documented(name) == types(schema.arrow(name, rows).schema)
 
 
-def test_columns_of_a_lineage_are_those_of_the_page() -> None:
+def test_columns_of_a_phylogeny_are_those_of_the_page() -> None:
     written = types(table(forest([(0, 5, True)])).schema)
-    common = documented("lineage")
+    common = documented("phylogeny")
     assert common == {name: written[name] for name in common}
     assert {*written} - {*common} == {"food"}
 

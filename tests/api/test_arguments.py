@@ -96,8 +96,8 @@ CASES: list[tuple[str, tuple[Any, ...], dict[str, Any], str, Any]] = [
     ("ancestors", (0, 2), {"say": print}, "ancestors", call(ANY, 0, 2, print)),
     ("ancestors", (), {"say": print}, "ancestors", call(ANY, 5, 9, print)),
     ("ancestors", (None, 2), {"say": print}, "ancestors", call(ANY, 5, 2, print)),
-    ("lines", (2, 7), {}, "lines", call(ANY, 2, 7)),
-    ("lines", (), {}, "lines", call(ANY, None, None)),
+    ("lineages", (2, 7), {}, "lines", call(ANY, 2, 7)),
+    ("lineages", (), {}, "lines", call(ANY, None, None)),
     ("export", ("OUT", 4, 5), {"world": 2}, "export", call(ANY, OUT, (4, 5), 2)),
     ("export", (OUT,), {}, "export", call(ANY, OUT, (), 0)),
     ("rebuild", (3, 2), {}, "rebuild", call(ANY, 3, 2)),
@@ -148,7 +148,7 @@ def test_a_phylogeny_is_of_the_whole_past_and_of_the_part_that_is_chosen(
         patch.object(runs, "table") as table,
         patch.object(formats, "save") as save,
     ):
-        made = primordia.Run(RUN).lineage(0, out=out, say=say, world=2, extant=True)
+        made = primordia.Run(RUN).phylogeny(0, out=out, say=say, world=2, extant=True)
     past.assert_called_once_with(opened, say)
     chosen.assert_called_once_with(past.return_value.whole, 0, world=2, extant=True)
     if out is None:

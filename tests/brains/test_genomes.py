@@ -15,7 +15,7 @@ from primordia.brains import genomes
 from primordia.brains.recurrent import Recurrent
 from primordia.config import load
 from primordia.errors import InputError
-from primordia.history.lineage import rebuild_all
+from primordia.history.rebuilding import rebuild_all
 from primordia.random.wide import modulo, wide
 from primordia.runs import loop
 from primordia.runs.archive import Archive

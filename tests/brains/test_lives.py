@@ -8,7 +8,7 @@ import pytest
 
 from primordia.runs import loop
 from tests.brains.test_contract import TABLES
-from tests.history.test_lineage import assert_rebuilt
+from tests.history.test_rebuilding import assert_rebuilt
 from tests.worlds import MILL, Lived, config
 
 pytestmark = pytest.mark.slow

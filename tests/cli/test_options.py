@@ -62,12 +62,12 @@ CALLS: dict[tuple[Any, ...], Any] = {
     ("track", RUN): call.track(None, None, seen=ANY, follow=False, every=30.0),
     ("report", RUN, "--out", OUT): call.report(OUT),
     ("watch", RUN, "--port", 0): call.watch(0, ANY),
-    ("lineage", RUN, 5, "--out", OUT, "--world", 2, "--extant"):
-        call.lineage(5, out=OUT, say=report, world=2, extant=True, collapse=False),
-    ("lineage", RUN, 0, "--out", OUT, "--world", 0):
-        call.lineage(0, out=OUT, say=report, world=0, extant=False, collapse=False),
-    ("lineage", RUN, "--out", OUT, "--collapse"):
-        call.lineage(None, out=OUT, say=report, world=None, extant=False, collapse=True),
+    ("phylogeny", RUN, 5, "--out", OUT, "--world", 2, "--extant"):
+        call.phylogeny(5, out=OUT, say=report, world=2, extant=True, collapse=False),
+    ("phylogeny", RUN, 0, "--out", OUT, "--world", 0):
+        call.phylogeny(0, out=OUT, say=report, world=0, extant=False, collapse=False),
+    ("phylogeny", RUN, "--out", OUT, "--collapse"):
+        call.phylogeny(None, out=OUT, say=report, world=None, extant=False, collapse=True),
     ("ancestors", RUN, 5, "--world", 2, "--json"): call.ancestors(5, 2, report),
     ("ancestors", RUN, 0, "--world", 0, "--json"): call.ancestors(0, 0, report),
     ("ancestors", RUN, "--world", 0, "--json"): call.ancestors(None, 0, report),
@@ -133,15 +133,15 @@ def test_a_run_is_begun_with_the_settings_of_its_flags(
 
 
 def test_a_life_is_lived_again_with_the_given_options(run: MagicMock) -> None:
-    with patch("primordia.organism.revival.revive") as asked:
+    with patch("primordia.organism.reliving.compare.relive") as asked:
         asked.return_value.to_dict.return_value = {}
         files = ("--save", OUT, "--video", "V")
-        does("revive", RUN, 5, "--world", 2, "--from", 3, *files, "--trust", "--json")
+        does("relive", RUN, 5, "--world", 2, "--from", 3, *files, "--trust", "--json")
         opened = run.opened.return_value
         asked.assert_called_once_with(opened, 5, 2, since=3, save=OUT, film=Path("V"))
-        does("revive", RUN, 0, "--world", 0, "--from", 0, "--json")
+        does("relive", RUN, 0, "--world", 0, "--from", 0, "--json")
         assert asked.call_args == call(opened, 0, 0, since=0, save=None, film=None)
-        does("revive", RUN, 5, "--json")
+        does("relive", RUN, 5, "--json")
         assert asked.call_args == call(opened, 5, 0, since=None, save=None, film=None)
 
 

@@ -6,10 +6,10 @@ from typing import Any
 import pytest
 
 import primordia
-from primordia.history.lineage import descent
+from primordia.history.rebuilding import descent
 from primordia.runs import loop
 from primordia.runs.archive import Archive
-from tests.history.test_lineage import assert_rebuilt
+from tests.history.test_rebuilding import assert_rebuilt
 from tests.strange import STRANGE, STRANGER
 from tests.worlds import config
 

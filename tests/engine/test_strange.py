@@ -22,7 +22,7 @@ from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests import commands
-from tests.history.test_lineage import assert_rebuilt
+from tests.history.test_rebuilding import assert_rebuilt
 from tests.strange import BLOCKS, QUIET, SEEDS, STRANGE, STRANGER, TICKS
 from tests.worlds import Lived, config
 

@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 
 from primordia.errors import Trouble
-from primordia.history import lineage as lines
-from primordia.history import pedigree
-from primordia.history.lineage import changes, descent, rebuild_all
+from primordia.history import pedigree, rebuilding
 from primordia.history.pedigree import genomes
+from primordia.history.rebuilding import changes, descent, rebuild_all
 from primordia.random.wide import to_host
 from primordia.runs.lives import joined
 from tests.assays.lives import COPY, FOUNDER, MUTANT, lives
@@ -56,7 +55,7 @@ def a_run(mates: np.ndarray | None = None) -> Any:
 def at_once(monkeypatch: pytest.MonkeyPatch) -> int:
     """Repeat three births in one call, or one: generations have up to six, and lines up to ten."""
     monkeypatch.setattr(pedigree, "FEW", 1)
-    for module, name in ((pedigree, "AT_ONCE"), (lines, "STEPS_AT_A_TIME")):
+    for module, name in ((pedigree, "AT_ONCE"), (rebuilding, "STEPS_AT_A_TIME")):
         monkeypatch.setattr(module, name, 3)
         monkeypatch.setattr(module, "PastClimate", lambda _: SimpleNamespace(of_lives=climate_of))
     return 3
@@ -118,7 +117,7 @@ def test_each_line_of_descent_is_replayed_from_its_founder(
             genome = np.array([genome[0] + 1, number[k], world[k], notes[k, 0]], np.float32)
         return genome, number[:, None].astype(np.float32)
 
-    monkeypatch.setattr(lines, "shared", lambda *_: replay)
+    monkeypatch.setattr(rebuilding, "shared", lambda *_: replay)
     asked = [(9, 1), (11, 0), (0, 0), (3, 1), (4, 0)]
     expected = [[10, 9, 1, 90], [6, 11, 0, 110], [1, 0, 0, 0], [4, 3, 1, 30], [2, 4, 0, 40]]
     assert rebuild_all(a_run(), asked).tolist() == expected

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import primordia
-from primordia.history.lineage import rebuild_all
 from primordia.history.pedigree import genomes
+from primordia.history.rebuilding import rebuild_all
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.worlds import HERD, MEADOW, config

@@ -16,8 +16,8 @@ from hypothesis import strategies as st
 
 from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
+from primordia.organism.reliving.compare import relive
 from primordia.organism.reliving.course import Course
-from primordia.organism.revival import revive
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
 from tests.trouble import newest, reseal
@@ -82,7 +82,7 @@ def test_a_forged_death_is_noticed(
         pq.write_table(pa.Table.from_pylist(rows, schema=before.schema), path)
     reseal(newest(run))
     for number, cause in zip(chosen, ENDS, strict=True):
-        done = here("revive", run, number, "--json")
+        done = here("relive", run, number, "--json")
         complains(done, 1, f"organism {number} of world 0, lived again, differs from its record")
         found = json.loads(done.stdout)
         assert not found["agrees"]
@@ -92,7 +92,7 @@ def test_a_forged_death_is_noticed(
         dies_before = change is later and cause is not Cause.REPLACED
         assert found["ends"] == recorded - dies_before
         assert {row["name"] for row in found["respects"] if not row["agrees"]} >= respects
-    shown = here("revive", run, chosen[0])
+    shown = here("relive", run, chosen[0])
     assert shown.returncode == 1
     assert "NO" in shown.stdout
 
@@ -130,5 +130,5 @@ def test_a_forged_state_of_the_living_is_noticed(
     np.savez(newest(run) / "state.npz", allow_pickle=False, **arrays)
     reseal(newest(run))
     respect = {"energy": "energy", "eaten": "food", "memory": "memory"}[name]
-    found = revive(Archive(run), int(lives.id[row]))
+    found = relive(Archive(run), int(lives.id[row]))
     assert [each.name for each in found.respects if not each.agrees] == [respect]

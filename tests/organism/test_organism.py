@@ -68,20 +68,20 @@ def test_ancestors_genome_policy_and_games_are_those_of_the_organism(twelfth: Or
     evaluate.assert_called_once_with(twelfth.run, [(12, 2)], games=3, sticky=0.5)
 
 
-def test_videos_and_revivals_are_those_of_the_organism_with_the_given_options(
+def test_videos_and_relived_lives_are_those_of_the_organism_with_the_given_options(
     twelfth: Organism,
 ) -> None:
     """A path may be given as a text."""
-    with patch.object(organism, "replay") as replay, patch.object(organism, "revive") as revive:
+    with patch.object(organism, "replay") as replay, patch.object(organism, "relive") as relive:
         twelfth.replay("a.gif", (0, 9), (3, 4))
         twelfth.replay()
-        twelfth.revive(0, "a.npz", Path("b.gif"))
-        twelfth.revive()
+        twelfth.relive(0, "a.npz", Path("b.gif"))
+        twelfth.relive()
     assert replay.call_args_list == [
         call(twelfth.run, 12, 2, Path("a.gif"), (0, 9), beside=(3, 4)),
         call(twelfth.run, 12, 2, None, (None, None), beside=()),
     ]
-    assert revive.call_args_list == [
+    assert relive.call_args_list == [
         call(twelfth.run, 12, 2, since=0, save=Path("a.npz"), film=Path("b.gif")),
         call(twelfth.run, 12, 2, since=None, save=None, film=None),
     ]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from primordia.errors import InputError
-from primordia.history import lineage
+from primordia.history import rebuilding
 from primordia.law.world import Cause
 from primordia.phylogeny import descent
 from primordia.phylogeny.descent import Ancestors, ancestors
@@ -41,7 +41,7 @@ def followed(lives: Lives, organism: int, monkeypatch: pytest.MonkeyPatch) -> An
 
     def sizes(run: Any, number: int, world: int) -> np.ndarray:
         """Return the changes of two blocks. Organism 1 is a copy, so its changes are zero."""
-        line = lineage.descent(run.lives, number, world)
+        line = rebuilding.descent(run.lives, number, world)
         found = np.outer(line - 1, (3.0, 4.0))
         found[0] = np.nan
         return found

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 import primordia
 from primordia.cli.descent import _sweeps_text
 from primordia.errors import InputError
-from primordia.history.lineage import changes
 from primordia.history.pedigree import genomes
+from primordia.history.rebuilding import changes
 from primordia.law.world import BirthCause
 from primordia.phylogeny.descent import Ancestors
 from primordia.phylogeny.sweeps import Sweep
@@ -158,7 +158,7 @@ def test_changes_before_a_fork_are_left_out_if_the_code_there_is_untrusted(
 
 
 def test_lines_in_a_fork_are_founded_at_it(forked: Path) -> None:
-    (lines,) = primordia.load(forked).lines(world=1)
+    (lines,) = primordia.load(forked).lineages(world=1)
     assert lines.ticks[0] == 200
     assert sorted(lines.lives.id[lines.founders]) == sorted(lines.lives.id[lines.lives.entered > 0])
 
@@ -188,14 +188,14 @@ def test_the_commands_print_tables_and_json_and_draw(run: Path, tmp_path: Path) 
     assert [each["generation"] for each in told["line"]] == list(range(len(told["line"])))
     by_number = json.loads(here("ancestors", run, told["organism"], "--world", 1, "--json").stdout)
     assert by_number == told
-    done = here("lines", run, "--world", "all", "--out", tmp_path)
+    done = here("lineages", run, "--world", "all", "--out", tmp_path)
     assert done.returncode == 0, done.stderr
     assert done.stdout.count("lines founded at tick") == 2
     assert {each.name for each in tmp_path.iterdir()} == {
         f"{name}.{kind}" for name in ("ancestors", "lines-0", "lines-1") for kind in ("png", "svg")
     }
-    of_all = json.loads(here("lines", run, "--world", "all", "--json").stdout)
-    (of_one,) = json.loads(here("lines", run, "--world", 1, "--json").stdout)
+    of_all = json.loads(here("lineages", run, "--world", "all", "--json").stdout)
+    (of_one,) = json.loads(here("lineages", run, "--world", 1, "--json").stdout)
     assert of_all[1] == of_one
     for told in of_all:
         now = told["effective_lines"]["2"][-1]
@@ -206,7 +206,7 @@ def test_the_commands_print_tables_and_json_and_draw(run: Path, tmp_path: Path) 
 
 
 def test_lines_can_be_founded_at_any_tick(run: Path) -> None:
-    (late,) = json.loads(here("lines", run, "--at", 250, "--json").stdout)
+    (late,) = json.loads(here("lineages", run, "--at", 250, "--json").stdout)
     assert late["founded"] == late["ticks"][0] == 250
     assert len(late["lines"]) == late["living"][0]
     assert late["ticks"][-1] == 300
@@ -214,7 +214,7 @@ def test_lines_can_be_founded_at_any_tick(run: Path) -> None:
 
 def test_the_last_tick_is_enough(run: Path) -> None:
     """At the last tick each line has one organism, and nothing has drifted."""
-    (only,) = primordia.load(run).lines(world=0, at=300)
+    (only,) = primordia.load(run).lineages(world=0, at=300)
     assert only.ticks.tolist() == [300]
     assert (only.counts == 1).all()
     assert only.p_of_effective == 1
@@ -225,10 +225,13 @@ def test_the_last_tick_is_enough(run: Path) -> None:
     [
         (["ancestors", "RUN", 10**9], "no organism 1000000000 was born in world 0"),
         (["ancestors", "RUN", "--world", 7], "there is no world 7"),
-        (["lines", "RUN", "--world", 2], "there is no world 2; the worlds are 0 to 1"),
-        (["lines", "RUN", "--world", "both"], "'both' is neither the number of a world nor `all`"),
-        (["lines", "RUN", "--at", 301], "tick 301 is not on record; the ticks are 0 to 300"),
-        (["lines", "RUN/none"], "is not a run"),
+        (["lineages", "RUN", "--world", 2], "there is no world 2; the worlds are 0 to 1"),
+        (
+            ["lineages", "RUN", "--world", "both"],
+            "'both' is neither the number of a world nor `all`",
+        ),
+        (["lineages", "RUN", "--at", 301], "tick 301 is not on record; the ticks are 0 to 300"),
+        (["lineages", "RUN/none"], "is not a run"),
     ],
 )
 def test_bad_input_is_one_line(run: Path, words: list, part: str) -> None:
@@ -246,7 +249,7 @@ def test_lines_of_a_world_that_died_out_are_lost(tmp_path: Path) -> None:
         "stop": {"ticks": 40},
     }
     loop.start(config(starving), tmp_path / "run")
-    (first,) = primordia.load(tmp_path / "run").lines(at=1)
+    (first,) = primordia.load(tmp_path / "run").lineages(at=1)
     assert first.counts[0].tolist() == [1] * 16
     assert first.counts[-1].tolist() == [0] * 16
     assert first.drift.final.max() == 0
@@ -261,7 +264,7 @@ def test_without_heredity_lines_go_on_and_a_line_of_descent_does_not(tmp_path: P
     """The control's children are random founders that have a mother; lines are hers, genomes are not."""
     loop.start(config({**LIVES, "inheritance": "founder"}, stop={"ticks": 200}), tmp_path / "run")
     assert len(primordia.load(tmp_path / "run").ancestors().line) == 1
-    (first, _) = primordia.load(tmp_path / "run").lines()
+    (first, _) = primordia.load(tmp_path / "run").lineages()
     assert first.shares[-1].max() > 0.2
 
 

@@ -13,7 +13,7 @@ from primordia.config import Config
 from primordia.errors import InputError, Trouble
 from primordia.history.foraging import foraging
 from primordia.history.info import info
-from primordia.history.lineage import rebuild_all
+from primordia.history.rebuilding import rebuild_all
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import loop, record
 from primordia.runs.archive import Archive

@@ -13,7 +13,7 @@ from primordia.api import Run
 from primordia.brains import genomes
 from primordia.errors import InputError
 from primordia.history.foraging import foraging
-from primordia.history.lineage import rebuild_all
+from primordia.history.rebuilding import rebuild_all
 from primordia.runs import loop
 from primordia.runs.arm import Arm
 from primordia.runs.manifest import Progress

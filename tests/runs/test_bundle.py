@@ -59,9 +59,9 @@ def test_a_bundle_is_the_run_again(
     (png,), (same,) = ([*(tmp_path / each).glob("*.png")] for each in ("there", "here"))
     assert png.read_bytes() == same.read_bytes()
     for number in primordia.load(path).lives().id[::20].tolist():
-        revived = [primordia.load(each).organism(number).revive() for each in (first, path)]
-        assert revived[0].agrees
-        assert revived[0].respects == revived[1].respects
+        relived = [primordia.load(each).organism(number).relive() for each in (first, path)]
+        assert relived[0].agrees
+        assert relived[0].respects == relived[1].respects
 
 
 def test_a_bundle_holds_what_the_newest_checkpoint_names_alone(

@@ -32,7 +32,7 @@ def elsewhere(tmp_path_factory: pytest.TempPathFactory) -> Path:
     [
         ["resume", "--ticks", "80"],
         ["verify"],
-        ["revive", "0"],
+        ["relive", "0"],
         ["replay"],
         ["film"],
         ["evaluate", "--games", "1"],
@@ -57,8 +57,8 @@ def test_a_device_that_is_not_here_is_named_in_one_line(
 
 def test_another_device_can_be_chosen(elsewhere: Path) -> None:
     """Lives of this run were lived on the CPU, so they agree there."""
-    revived = CliRunner().invoke(commands, ["revive", str(elsewhere), "0", "--device", "cpu"])
-    assert revived.exit_code == 0, revived.output
+    relived = CliRunner().invoke(commands, ["relive", str(elsewhere), "0", "--device", "cpu"])
+    assert relived.exit_code == 0, relived.output
     refused = CliRunner().invoke(commands, ["resume", str(elsewhere), "--device", "cpu"]).exception
     assert f"device {CARD} then, cpu now" in str(refused)
 

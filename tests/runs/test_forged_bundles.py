@@ -185,7 +185,7 @@ def test_a_hostile_bundle_is_refused_in_one_line(file: Path, tmp_path: Path, kin
     change(parts)
     (folder := tmp_path / "folder").mkdir()
     forged, before = zipped(parts, folder / "forged.zip"), os.listdir(tempfile.gettempdir())
-    for command in (["info"], ["revive", "1"], ["unbundle", str(folder / "new")]):
+    for command in (["info"], ["relive", "1"], ["unbundle", str(folder / "new")]):
         complains(here(command[0], forged, *command[1:]), 2, words)
     assert os.listdir(tempfile.gettempdir()) == before
     assert (os.listdir(tmp_path), os.listdir(folder)) == (["folder"], ["forged.zip"])

@@ -16,7 +16,7 @@ from primordia.runs import loop
 from primordia.runs.archive import Archive
 from primordia.runs.verify import verify
 from tests.commands import complains, here
-from tests.history.test_lineage import assert_rebuilt
+from tests.history.test_rebuilding import assert_rebuilt
 from tests.worlds import MILL, config, merged
 
 SHIFTING = {**MILL, "brain": {"hidden": 4}, "seeds": 2, "seed": 11, "stop": {"ticks": 1500}}

@@ -63,7 +63,7 @@ def test_a_bundle_is_lived_again_without_the_original_files(
     monkeypatch.chdir(tmp_path)
     assert here("unbundle", file, "theirs").returncode == 0
     assert here("verify", "theirs").returncode == 0
-    assert here("revive", "theirs", 0).returncode == 0
+    assert here("relive", "theirs", 0).returncode == 0
     filmed = here("replay", "theirs", "--organism", 0, "--out", "film.mp4")
     if "cannot be used" not in filmed.stderr:  # there may be no OpenGL here
         assert filmed.returncode == 0, filmed.stderr

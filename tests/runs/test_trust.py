@@ -31,10 +31,10 @@ def test_a_bundle_executes_nothing_until_it_is_trusted(
     for command in (["info"], ["plot", "--out", "figures", "--figure", "ages"]):
         assert here(command[0], folder.parent / "sent.zip", *command[1:]).returncode == 0
     assert "pond" not in sys.modules
-    stopped = here("revive", folder.parent / "sent.zip", 3)
+    stopped = here("relive", folder.parent / "sent.zip", 3)
     complains(stopped, 2, "executes code that Primordia does not know")
     assert "pond" not in sys.modules
-    done = here("revive", folder.parent / "sent.zip", 3, "--trust")
+    done = here("relive", folder.parent / "sent.zip", 3, "--trust")
     assert done.returncode == 0, done.stderr
 
 
@@ -78,7 +78,7 @@ def test_looking_executes_no_code_of_a_run(folder: Path, monkeypatch: pytest.Mon
         ["plot", run, "--out", run.parent / "figures"],
         ["report", run, "--out", run.parent / "report.html"],
         ["export", run, run.parent / "genome.safetensors"],
-        ["lineage", run, "--out", run.parent / "lineage.csv"],
+        ["phylogeny", run, "--out", run.parent / "phylogeny.csv"],
         ["compare", run, twin, "--out", run.parent],
     ):
         done = here(*command)

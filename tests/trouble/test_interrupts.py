@@ -27,7 +27,7 @@ COMMANDS: dict[str, tuple[object, ...]] = {
     "replay": ("replay", "RUN", "--out", "OUT/life.mp4"),
     "export": ("export", "RUN", "OUT/genome.safetensors"),
     "info": ("info", "RUN"),
-    "lineage": ("lineage", "RUN", "--out", "OUT/lineage.parquet"),
+    "phylogeny": ("phylogeny", "RUN", "--out", "OUT/phylogeny.parquet"),
     "verify": ("verify", "RUN"),
 }
 LONGEST = {"run": 3.0, "resume": 3.0, "fork": 3.0, "plot": 2.0, "replay": 2.0}

@@ -152,7 +152,7 @@ def test_a_file_that_fails_half_written_leaves_the_old_one(tmp_path: Path) -> No
 
 OUTPUTS = {
     "genome.safetensors": ("export", "RUN", "OUT/genome.safetensors"),
-    "lineage.csv": ("lineage", "RUN", "--out", "OUT/lineage.csv"),
+    "phylogeny.csv": ("phylogeny", "RUN", "--out", "OUT/phylogeny.csv"),
     "life.mp4": ("replay", "RUN", "--out", "OUT/life.mp4"),
     "ages.png": ("plot", "RUN", "--figure", "ages", "--out", "OUT"),
     "page.html": ("report", "RUN", "--out", "OUT/page.html"),

@@ -18,7 +18,7 @@ from primordia.runs.arrays import _sizes
 from tests.commands import complains, here
 from tests.trouble import newest, reseal
 
-READING = ["info", "plot", "report", "film", "export", "ancestors", "lines", "track"]
+READING = ["info", "plot", "report", "film", "export", "ancestors", "lineages", "track"]
 
 
 def tried(command: str, run: Path, folder: Path) -> Any:

@@ -69,7 +69,7 @@ WORDS = (
     ("resume", "{}"),
     ("verify", "{}"),
     ("fork", "{}", "--at", "5"),
-    ("revive", "{}", "1"),
+    ("relive", "{}", "1"),
     ("bundle", "{}", "{}"),
     ("unbundle", "{}", "{}"),
     ("run", "{}"),
@@ -96,9 +96,9 @@ def test_odd_words_are_answered_with_one_line(
 
 FILES = (
     ("export", "RUN", "{}"),
-    ("lineage", "RUN", "--out", "{}.nwk"),
+    ("phylogeny", "RUN", "--out", "{}.nwk"),
     ("bundle", "RUN", "{}"),
-    ("revive", "RUN", "0", "--save", "{}.npz"),
+    ("relive", "RUN", "0", "--save", "{}.npz"),
     ("replay", "RUN", "--from", "0", "--to", "5", "--out", "{}.gif"),
     ("run", *SMALL, "--ticks", "5", "--out", "{}"),
 )

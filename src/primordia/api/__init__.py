@@ -164,7 +164,7 @@ def load(run: str | Path | Sequence[str | Path], trust: bool = False) -> Run:
             `Experiment`.
         trust: allow Primordia to execute the run's own code on this machine from now on. If the
             user has already begun a run with the same code, no permission is needed. With other
-            code and no permission, `resume`, `fork`, `verify`, `replay`, `revive`, `evaluate` and
+            code and no permission, `resume`, `fork`, `verify`, `replay`, `relive`, `evaluate` and
             `policy` raise InputError. Reading records executes nothing.
 
     Raises:

@@ -17,7 +17,7 @@ from primordia.comparison.controls import FOUNDERS, Standing, evolved, unevolved
 from primordia.comparison.shadow import ORGANISMS, Shadow, shadow
 from primordia.errors import InputError, Trouble
 from primordia.history.info import info
-from primordia.history.lineage import rebuild
+from primordia.history.rebuilding import rebuild
 from primordia.history.threshold import Threshold, threshold
 from primordia.organism.evaluation import Evaluation, evaluate
 from primordia.organism.export import export
@@ -157,7 +157,7 @@ class Run:
         oldest = Organism(run, run.lives.oldest(world))
         return ancestors(run, oldest.id, oldest.world, say)
 
-    def lines(self, world: int | None = None, at: int | None = None) -> list[WorldLines]:
+    def lineages(self, world: int | None = None, at: int | None = None) -> list[WorldLines]:
         """Measure how lines replace each other, in one world or in all; see `phylogeny.lines`."""
         return lines(self.opened(), world, at)
 
@@ -169,7 +169,7 @@ class Run:
         """Write the genomes of some organisms of one world to a safetensors file; see `export.export`."""
         return export(self.opened(), Path(out), organisms, world)
 
-    def lineage(
+    def phylogeny(
         self,
         organism: int | None = None,
         *,

@@ -8,7 +8,7 @@ import numpy as np
 
 from primordia.assays.subjects import GAMES, TICKS, of_run
 from primordia.history import pedigree
-from primordia.history.lineage import descent
+from primordia.history.rebuilding import descent
 from primordia.law.world import BirthCause
 from primordia.organism.games import lifespans_in_games
 from primordia.runs.records import Records

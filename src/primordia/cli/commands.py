@@ -16,9 +16,9 @@ from primordia.cli import (
     experiment,
     film,
     inspect,
-    lineage,
     page,
-    revive,
+    phylogeny,
+    relive,
     shadow,
     track,
 )
@@ -32,9 +32,9 @@ GROUPS = {
     "Evolve": ("run", "resume", "fork", "experiment", "tasks", "new", "check"),
     "Look": ("info", "plot", "report", "watch", "replay", "film"),
     "Compare": ("compare", "evaluate", "shadow", "assay"),
-    "Descent": ("ancestors", "lines", "lineage"),
+    "Descent": ("ancestors", "lineages", "phylogeny"),
     "Share": ("bundle", "unbundle", "export", "import", "track"),
-    "Trust": ("verify", "revive", "doctor"),
+    "Trust": ("verify", "relive", "doctor"),
 }
 """Names of all commands, by what a user wants to do, in the order of the work."""
 
@@ -69,8 +69,8 @@ def commands() -> None:
 
 
 PARTS = (
-    bundle, descent, doctor, environments, evaluate, evolve, experiment, film, inspect, lineage, page,
-    revive, shadow, track, assays,
+    bundle, descent, doctor, environments, evaluate, evolve, experiment, film, inspect, page, phylogeny,
+    relive, shadow, track, assays,
 )  # fmt: skip
 made = {command.name: command for part in PARTS for command in part.COMMANDS}
 for names in GROUPS.values():

@@ -69,7 +69,7 @@ def ancestors(
 @out_option
 @cache_option
 @json_option
-def lines(run: Path, world: str, at: int | None, out: Path | None, as_json: bool) -> None:
+def lineages(run: Path, world: str, at: int | None, out: Path | None, as_json: bool) -> None:
     """Measure how lines of descent replace each other, and compare them with neutral shadows.
 
     A line consists of an organism that is alive after a certain tick (--at), and of all its
@@ -79,7 +79,7 @@ def lines(run: Path, world: str, at: int | None, out: Path | None, as_json: bool
     """
     from primordia.api import load
 
-    found = load(run).lines(_world(world), at)
+    found = load(run).lineages(_world(world), at)
     if as_json:
         click.echo(json.dumps([each.to_dict() for each in found]))
     else:
@@ -229,5 +229,5 @@ def _count(value: int | None) -> str:
     return "-" if value is None else f"{value:,}"
 
 
-COMMANDS = (ancestors, lines)
+COMMANDS = (ancestors, lineages)
 """The commands of this module."""

@@ -1,7 +1,7 @@
 """Pedigrees: the genomes of many organisms, rebuilt from the records or with new random draws.
 
 The births of a pedigree are repeated generation by generation. With the recorded draws, the results
-are the organisms' own genomes, as in `lineage`. With new draws, the results are the genomes of the
+are the organisms' own genomes, as in `rebuilding`. With new draws, the results are the genomes of the
 neutral shadow: the same parents and times of birth, but other founders and mutations, which were
 never selected (Bedau & Packard 1992).
 """

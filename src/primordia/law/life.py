@@ -1,6 +1,6 @@
 """One tick of N organisms without neighbours: brains think, motors act, outcomes are judged.
 
-Both engines, revived lives and evaluations use these functions, so an organism's tick has the same
+Both engines, relived lives and evaluations use these functions, so an organism's tick has the same
 rules everywhere. The modules `tick` and `turnover` add neighbours, worlds, accidents and births.
 """
 

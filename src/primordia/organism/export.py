@@ -5,7 +5,7 @@ from pathlib import Path
 
 from primordia.brains import genomes
 from primordia.errors import InputError
-from primordia.history.lineage import rebuild_all
+from primordia.history.rebuilding import rebuild_all
 from primordia.organism.policy import Policy
 from primordia.runs.records import Records
 

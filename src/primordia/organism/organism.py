@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from primordia.history.lineage import descent, rebuild
+from primordia.history.rebuilding import descent, rebuild
 from primordia.law.world import BirthCause, Cause
 from primordia.organism.evaluation import Evaluation, evaluate
 from primordia.organism.policy import Policy
+from primordia.organism.reliving.compare import Reliving, relive
 from primordia.organism.replay import replay
-from primordia.organism.revival import Revival, revive
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 
@@ -105,12 +105,12 @@ class Organism:
         path = Path(out) if out is not None else None
         return replay(self.run, self.id, self.world, path, ages, beside=beside)
 
-    def revive(
+    def relive(
         self,
         since: int | None = None,
         save: str | Path | None = None,
         film: str | Path | None = None,
-    ) -> Revival:
-        """Live the organism's life again and compare it with the record; see `revival.revive`."""
+    ) -> Reliving:
+        """Live the organism's life again and compare it with the record; see `compare.relive`."""
         save, film = (None if each is None else Path(each) for each in (save, film))
-        return revive(self.run, self.id, self.world, since=since, save=save, film=film)
+        return relive(self.run, self.id, self.world, since=since, save=save, film=film)

@@ -7,7 +7,7 @@ import numpy as np
 
 from primordia.history.climate import PastClimate
 from primordia.history.founders import founders
-from primordia.history.lineage import rebuild_all
+from primordia.history.rebuilding import rebuild_all
 from primordia.law.metabolism import Rates
 from primordia.organism.games import Players
 from primordia.random.keys import Purpose, stream

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from primordia.errors import InputError
-from primordia.history.lineage import changes, descent
+from primordia.history.rebuilding import changes, descent
 from primordia.law.world import BirthCause, Cause
 from primordia.phylogeny.ancestry import children, nearest
 from primordia.phylogeny.coalescence import Genealogy
@@ -53,7 +53,7 @@ class Ancestors:
     blocks: list[str]
     """names of the B blocks of weights"""
     changes: np.ndarray | None
-    """size of each mutation by block, float64 (D, B), or None if unknown; see `lineage.changes`"""
+    """size of each mutation by block, float64 (D, B), or None if unknown; see `rebuilding.changes`"""
     unknown: str | None
     """why the sizes of mutations, or of those before a fork, are not known"""
     ticks: dict[str, np.ndarray]

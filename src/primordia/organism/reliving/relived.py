@@ -23,7 +23,7 @@ from primordia.errors import InputError, Trouble
 from primordia.habitats.contract import AnyHabitat
 from primordia.history.births import place_in
 from primordia.history.climate import PastClimate
-from primordia.history.lineage import rebuild
+from primordia.history.rebuilding import rebuild
 from primordia.law.genesis import body_words
 from primordia.law.law import Law
 from primordia.law.life import BODILY, Vitals

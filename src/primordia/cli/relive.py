@@ -1,4 +1,4 @@
-"""The command `primordia revive`, which lives a life again and compares it with its record."""
+"""The command `primordia relive`, which lives a life again and compares it with its record."""
 
 import json
 from pathlib import Path
@@ -13,7 +13,7 @@ from primordia.cli.table import show_table
 from primordia.errors import Trouble
 
 if TYPE_CHECKING:
-    from primordia.organism.revival import Revival
+    from primordia.organism.reliving.compare import Reliving
 
 
 @click.command(short_help="Live a life again and compare it with the record.")
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 @trust_option
 @cache_option
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-def revive(
+def relive(
     run: Path,
     organism: int,
     world: int,
@@ -65,10 +65,10 @@ def revive(
     and a fork also its first checkpoint.
     """
     from primordia.api import load
-    from primordia.organism import revival
+    from primordia.organism.reliving import compare
 
     opened = load(run, trust).opened()
-    found = revival.revive(opened, organism, world, since=since, save=save, film=video)
+    found = compare.relive(opened, organism, world, since=since, save=save, film=video)
     if as_json:
         click.echo(json.dumps(found.to_dict()))
     else:
@@ -80,7 +80,7 @@ def revive(
         )
 
 
-def _show(found: "Revival") -> None:
+def _show(found: "Reliving") -> None:
     begin = {"birth": "its birth", "fork": "the fork", "checkpoint": "the checkpoint"}[found.begin]
     title = (
         f"organism {found.organism} of world {found.world}, lived again from {begin} at tick"
@@ -100,5 +100,5 @@ def _text(value: object) -> str:
     return value if isinstance(value, str) else f"{value:,.10g}"
 
 
-COMMANDS = (revive,)
+COMMANDS = (relive,)
 """The commands of this module."""

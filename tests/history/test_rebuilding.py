@@ -12,8 +12,8 @@ import pytest
 
 import primordia
 from primordia.errors import InputError
-from primordia.history.lineage import descent, rebuild_all
 from primordia.history.pedigree import genomes
+from primordia.history.rebuilding import descent, rebuild_all
 from primordia.runs import checkpoint, loop, record
 from primordia.runs.archive import Archive
 from tests.worlds import MEADOW, MILL, config, merged

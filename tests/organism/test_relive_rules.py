@@ -1,4 +1,4 @@
-"""Rules of revival: the state with which a life begins, the notes of a comparison, and the result."""
+"""Living again: the state with which a life begins, the notes of a comparison, and the result."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,9 +11,10 @@ import pytest
 
 from primordia.errors import InputError
 from primordia.law.world import Cause
-from primordia.organism import diary, replay, revival
+from primordia.organism import diary, replay
+from primordia.organism.reliving import compare
+from primordia.organism.reliving.compare import Reliving, Respect
 from primordia.organism.reliving.relived import RelivedLife
-from primordia.organism.revival import Respect, Revival
 from primordia.runs import checkpoint, directory
 
 A_RUN = MagicMock(made_on="cpu")
@@ -33,8 +34,8 @@ def stored(
     )
     run: Any = SimpleNamespace(path="RUN", lives=lives, fault_in=None, arrays_of=dict)
     monkeypatch.setattr(checkpoint, "whole_checkpoints", lambda *given: iter(KEPT))
-    monkeypatch.setattr(revival, "world_ticks", lambda arrays: arrays["ticks"])
-    found = revival._stored(run, 3, 1, since)
+    monkeypatch.setattr(compare, "world_ticks", lambda arrays: arrays["ticks"])
+    found = compare._stored(run, 3, 1, since)
     return None if found is None else int(found["ticks"][1])
 
 
@@ -100,7 +101,7 @@ def test_each_limit_of_a_comparison_is_noted_once(
         other_versions=given.get("other", []),
     )
     course: Any = SimpleNamespace(replaced=given.get("replaced", False))
-    found = revival._notes(run, course)
+    found = compare._notes(run, course)
     assert len(found) == len(notes)
     assert all(part in note for part, note in zip(notes, found, strict=True))
 
@@ -115,15 +116,15 @@ def test_a_life_of_one_tick_can_be_saved_and_one_of_no_tick_cannot(
         run = SimpleNamespace(schema=SimpleNamespace(tallies=("score",)))
         return SimpleNamespace(begins=5, ends=ends, record=SimpleNamespace(id=[3]), run=run)
 
-    revival._lived(lived(6), Path("a.npz"))
+    compare._lived(lived(6), Path("a.npz"))
     assert written == [("score",)]
     with pytest.raises(InputError, match="organism 3 has not lived a tick yet"):
-        revival._lived(lived(5), Path("a.npz"))
+        compare._lived(lived(5), Path("a.npz"))
 
 
-def test_a_revival_has_plain_values_for_json() -> None:
+def test_a_reliving_has_plain_values_for_json() -> None:
     respects = (Respect("tick", 9, 9), Respect("cause", "starved", None))
-    found = Revival(3, 1, "fork", 60, 1300, respects, ("a note",), (Path("a.npz"),))
+    found = Reliving(3, 1, "fork", 60, 1300, respects, ("a note",), (Path("a.npz"),))
     assert found.to_dict() == {
         "organism": 3, "world": 1, "begin": "fork", "begins": 60, "ends": 1300, "agrees": False,
         "respects": [
@@ -132,7 +133,7 @@ def test_a_revival_has_plain_values_for_json() -> None:
         ],
         "notes": ["a note"], "files": ["a.npz"],
     }  # fmt: skip
-    assert Revival(3, 1, "birth", 0, 9, respects[:1], (), ()).agrees
+    assert Reliving(3, 1, "birth", 0, 9, respects[:1], (), ()).agrees
 
 
 @pytest.fixture
@@ -145,12 +146,12 @@ def again() -> Iterator[MagicMock]:
     made.life = SimpleNamespace(stored=None, begins=60, cause=None)
     made.course.found.return_value, made.course.tick = {"tick": 90, "food": 2}, 90
     with (
-        patch.object(revival, "run_of", return_value=("a run", 1)),
-        patch.object(revival, "_stored", return_value=None) as made.stored,
+        patch.object(compare, "run_of", return_value=("a run", 1)),
+        patch.object(compare, "_stored", return_value=None) as made.stored,
         patch.object(RelivedLife, "of", return_value=made.life) as made.of,
-        patch.object(revival, "recorded", return_value={"tick": 90, "food": 2}) as made.recorded,
-        patch.object(revival, "_lived", return_value=made.course) as made.lived,
-        patch.object(revival, "_notes", return_value=["a note"]),
+        patch.object(compare, "recorded", return_value={"tick": 90, "food": 2}) as made.recorded,
+        patch.object(compare, "_lived", return_value=made.course) as made.lived,
+        patch.object(compare, "_notes", return_value=["a note"]),
         patch.object(replay, "parts_of", return_value="the parts") as made.parts,
         patch.object(replay, "film") as made.film,
     ):
@@ -165,7 +166,7 @@ def test_the_result_says_whether_a_life_began_with_birth_fork_or_checkpoint(
     stored: Any, since: int | None, begin: str, again: MagicMock
 ) -> None:
     again.life.stored = stored
-    found = revival.revive(A_RUN, 3, 7, since=since)
+    found = compare.relive(A_RUN, 3, 7, since=since)
     assert (found.organism, found.world) == (3, 7)
     assert (found.begin, found.begins, found.ends) == (begin, 60, 90)
     assert again.stored.call_args == call("a run", 3, 1, since)
@@ -182,7 +183,7 @@ def test_only_a_life_that_agrees_in_all_respects_is_filmed(
 ) -> None:
     """A value that the relived life lacks differs, too. The life is saved in each case."""
     again.recorded.return_value = recorded
-    found = revival.revive(A_RUN, 3, 7, save=save, film=Path("b.gif"))
+    found = compare.relive(A_RUN, 3, 7, save=save, film=Path("b.gif"))
     assert again.lived.call_args == call(again.life, save)
     saved = [] if save is None else [save]
     if recorded == {"tick": 90, "food": 2}:
@@ -200,7 +201,7 @@ def test_only_a_life_that_lost_its_body_cannot_be_lived_again(
 ) -> None:
     again.life.cause, again.life.record = cause, SimpleNamespace(id=[3])
     if cause is not Cause.RESTART:
-        assert revival.revive(A_RUN, 3, 7).agrees
+        assert compare.relive(A_RUN, 3, 7).agrees
         return
     with pytest.raises(InputError, match=r"^organism 3 ended when its run was resumed"):
-        revival.revive(A_RUN, 3, 7)
+        compare.relive(A_RUN, 3, 7)

@@ -1,4 +1,4 @@
-"""Lives revived agree with their records in every respect, and what limits that is said."""
+"""Lives relived agree with their records in every respect, and what limits that is said."""
 
 import json
 import shutil
@@ -14,8 +14,8 @@ from primordia.errors import InputError, Trouble
 from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
 from primordia.organism.organism import Organism
+from primordia.organism.reliving.compare import Reliving, relive
 from primordia.organism.reliving.relived import RelivedLife
-from primordia.organism.revival import Revival, revive
 from primordia.runs import directory, loop
 from primordia.runs.archive import Archive
 from primordia.runs.arm import Arm
@@ -41,7 +41,7 @@ def test_lives_of_each_end_agree_with_the_records(chain: list[Path], number: int
     assert set(ends) >= {-1, Cause.STARVED, Cause.HAZARD, Cause.REPLACED}
     for cause, rows in ends.items():
         for row in rows[np.linspace(0, len(rows) - 1, 3).astype(int)]:
-            found = Organism(run, int(row)).revive()
+            found = Organism(run, int(row)).relive()
             assert found.agrees, found
             assert found.ends == run.lives.ended[row]
             names = [each.name for each in found.respects]
@@ -53,18 +53,18 @@ def test_lives_of_each_end_agree_with_the_records(chain: list[Path], number: int
             assert names[4:] == [*living, *lived]
 
 
-def test_a_life_revived_from_a_checkpoint_agrees_too(chain: list[Path]) -> None:
+def test_a_life_lived_again_from_a_checkpoint_agrees_too(chain: list[Path]) -> None:
     run = Archive(chain[0])
     across = np.flatnonzero((run.lives.born < 118) & (run.lives.ended > 122))
     died = run.lives.died[across]
     for row in (across[died][0], *across[~died][:1]):
         for since in (120, 121, 10**20):
-            found = Organism(run, int(row)).revive(since)
+            found = Organism(run, int(row)).relive(since)
             assert (found.begin, found.begins, found.agrees) == ("checkpoint", 120, True)
     with pytest.raises(InputError, match=r"--from 1: .* keeps only later checkpoints: 120"):
-        Organism(run, int(across[0])).revive(since=1)
+        Organism(run, int(across[0])).relive(since=1)
     with pytest.raises(InputError, match="keeps no checkpoint of these ticks"):
-        Organism(run, 0).revive(since=100)
+        Organism(run, 0).relive(since=100)
 
 
 def test_a_life_does_not_begin_with_the_state_in_which_it_ends(chain: list[Path]) -> None:
@@ -73,10 +73,10 @@ def test_a_life_does_not_begin_with_the_state_in_which_it_ends(chain: list[Path]
     lives = run.lives
     for row in np.flatnonzero(~lives.died & (lives.born > 120))[:3]:
         with pytest.raises(InputError, match="keeps no checkpoint of these ticks"):
-            Organism(run, int(row)).revive(since=10**20)
+            Organism(run, int(row)).relive(since=10**20)
     older = np.flatnonzero((lives.born <= 120) & (lives.ended == 150))
     for row in older[:3]:
-        assert Organism(run, int(row)).revive(since=10**20).begins == 120
+        assert Organism(run, int(row)).relive(since=10**20).begins == 120
     assert len(older)
 
 
@@ -84,7 +84,7 @@ def test_a_fork_is_a_state_to_begin_with(chain: list[Path]) -> None:
     run = Archive(chain[1])
     row = int(np.flatnonzero((run.lives.born < 90) & (run.lives.ended > 110))[0])
     organism = Organism(run, row)
-    by_itself, asked = organism.revive(), organism.revive(since=100)
+    by_itself, asked = organism.relive(), organism.relive(since=100)
     assert (by_itself.begin, asked.begin) == ("fork", "checkpoint")
     assert (by_itself.begins, by_itself.respects) == (asked.begins, asked.respects)
 
@@ -99,10 +99,10 @@ def test_an_arms_worlds_are_those_of_its_runs(chain: list[Path], tmp_path: Path)
     alone = Archive(tmp_path / "b")
     for world in (1, 2):
         number = int(alone.lives.of_world(world - 1).id[-3])
-        found = arm.organism(number, world).revive()
+        found = arm.organism(number, world).relive()
         assert found.agrees
         assert found.world == world
-        assert found.respects == revive(alone, number, world - 1).respects
+        assert found.respects == relive(alone, number, world - 1).respects
 
 
 def test_a_life_is_saved_tick_by_tick(chain: list[Path], tmp_path: Path) -> None:
@@ -112,7 +112,7 @@ def test_a_life_is_saved_tick_by_tick(chain: list[Path], tmp_path: Path) -> None
     number = int(lives.id[np.argmax(lives.lifespan)])
     paths = [tmp_path / "new" / f"life.{kind}" for kind in ("npz", "parquet", "csv")]
     for path in paths:
-        assert revive(run, number, save=path).files == (path,)
+        assert relive(run, number, save=path).files == (path,)
     life = RelivedLife.of(run, number)
     seen = list(life.stretches())
     with np.load(paths[0]) as npz:
@@ -140,19 +140,19 @@ def test_a_life_is_saved_tick_by_tick(chain: list[Path], tmp_path: Path) -> None
 def test_a_video_is_made_of_a_life_that_agrees(tmp_path: Path) -> None:
     run, film = tmp_path / "run", tmp_path / "life.gif"
     primordia.run("CartPole-survival", run, cells=8, stop={"ticks": 200, "until": "none"})
-    done = here("revive", run, 1, "--video", film)
+    done = here("relive", run, 1, "--video", film)
     assert done.returncode == 0, done.stderr
     assert str(film) in done.stdout
     assert film.stat().st_size > 100
     life = primordia.load(run).organism(1)
     life.lives.ended[life.row] -= 1  # as a forged record would say
-    found = life.revive(film=tmp_path / "other.gif")
+    found = life.relive(film=tmp_path / "other.gif")
     assert not found.agrees
     assert not (tmp_path / "other.gif").exists()
     assert "was not made" in found.notes[-1]
 
 
-def only_note(found: Revival) -> str:
+def only_note(found: Reliving) -> str:
     (note,) = found.notes
     return note
 
@@ -168,71 +168,71 @@ def test_what_limits_the_comparison_is_said(
 ) -> None:
     run = Path(shutil.copytree(chain[0], tmp_path / "run"))
     number = dead(Archive(run))
-    assert revive(Archive(run), number).notes == ()
+    assert relive(Archive(run), number).notes == ()
     with directory.locked(run):
         assert "the run goes on; the records end at tick 150" in only_note(
-            revive(Archive(run), number)
+            relive(Archive(run), number)
         )
     versions = json.loads((run / "versions.json").read_text())
     (run / "versions.json").write_text(json.dumps({**versions, "jaxlib": "0.0.1"}))
     assert "exact repetition is not sure: jaxlib 0.0.1 then" in only_note(
-        revive(Archive(run), number)
+        relive(Archive(run), number)
     )
     (run / "versions.json").write_text(json.dumps(versions))
     reseal(newest(run), lambda content: content["progress"].update(exact=False, restarts=2))
-    inexact, restarts = revive(Archive(run), number).notes
+    inexact, restarts = relive(Archive(run), number).notes
     assert inexact.startswith("exact repetition is not sure")
     assert "got new bodies 2 times, when the run was resumed" in restarts
     lives = Archive(chain[0]).lives
     row = int(np.flatnonzero(lives.cause == Cause.REPLACED)[0])
-    replaced = Organism(Archive(chain[0]), row).revive()
+    replaced = Organism(Archive(chain[0]), row).relive()
     assert "a child took the cell in the last tick" in only_note(replaced)
 
 
 def test_a_missing_segment_is_an_error_of_one_line(chain: list[Path], tmp_path: Path) -> None:
     run = Path(shutil.copytree(chain[0], tmp_path / "run"))
     number = dead(Archive(run))
-    done = here("revive", run, number)
+    done = here("relive", run, number)
     assert done.returncode == 0
     first, last = sorted(run.glob("deaths/*"))
     last.unlink()
-    done = here("revive", run, number)
+    done = here("relive", run, number)
     assert done.returncode == 0, done.stderr
     assert "is missing; an older checkpoint was read" in done.stdout
     first.unlink()
-    complains(here("revive", run, number), 2, "000000.parquet is missing")
+    complains(here("relive", run, number), 2, "000000.parquet is missing")
 
 
-def test_what_cannot_be_revived_is_refused(
+def test_what_cannot_be_lived_again_is_refused(
     chain: list[Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     run, (organism, *_) = chain[0], Archive(chain[0]).lives.id
-    complains(here("revive", run, 10**6), 2, "no organism 1000000 was born in world 0")
-    complains(here("revive", run, organism, "--world", 7), 2, "was born in world 7")
-    complains(here("revive", tmp_path, organism), 2, "is not a run")
+    complains(here("relive", run, 10**6), 2, "no organism 1000000 was born in world 0")
+    complains(here("relive", run, organism, "--world", 7), 2, "was born in world 7")
+    complains(here("relive", tmp_path, organism), 2, "is not a run")
     complains(
-        here("revive", run, organism, "--save", tmp_path / "a.xls"), 2, ".npz, .parquet, .csv"
+        here("relive", run, organism, "--save", tmp_path / "a.xls"), 2, ".npz, .parquet, .csv"
     )
-    complains(here("revive", run, organism, "--video", tmp_path / "a.avi"), 2, ".mp4 or .gif")
-    complains(here("revive", run, organism, "--video", tmp_path / "a.gif"), 2, "no pictures")
-    complains(here("revive", run, organism, "--from", 3), 2, "keeps no checkpoint of these ticks")
+    complains(here("relive", run, organism, "--video", tmp_path / "a.avi"), 2, ".mp4 or .gif")
+    complains(here("relive", run, organism, "--video", tmp_path / "a.gif"), 2, "no pictures")
+    complains(here("relive", run, organism, "--from", 3), 2, "keeps no checkpoint of these ticks")
     opened = Archive(run)
     opened.lives.cause[opened.lives.row(dead(opened))] = Cause.RESTART
     with pytest.raises(InputError, match="ended when its run was resumed without its body"):
-        revive(opened, int(opened.lives.id[opened.lives.cause == Cause.RESTART][0]))
+        relive(opened, int(opened.lives.id[opened.lives.cause == Cause.RESTART][0]))
     monkeypatch.setattr(Mirror, "exact", False, raising=False)
     older = Archive(chain[1])
     if older.schema.tallies:
         with pytest.raises(InputError, match="older than the fork, and the habitat cannot save"):
-            Organism(older, 0).revive()
+            Organism(older, 0).relive()
 
 
 def test_a_file_that_cannot_be_written_has_the_status_that_the_help_states(
     chain: list[Path],
 ) -> None:
     number = dead(Archive(chain[0]))
-    complains(here("revive", chain[0], number, "--save", "/proc/a.npz"), 1, "cannot be written")
-    text = " ".join(here("revive", "--help").stdout.split())
+    complains(here("relive", chain[0], number, "--save", "/proc/a.npz"), 1, "cannot be written")
+    text = " ".join(here("relive", "--help").stdout.split())
     assert "1 if one differs or a file cannot be written" in text
 
 
@@ -247,7 +247,7 @@ def test_an_organism_that_was_just_born_agrees_and_has_nothing_to_save(
     loop.start(stopped, tmp_path / "run")
     run = Archive(tmp_path / "run")
     unborn = Organism(run, int(np.flatnonzero(run.lives.born == tick)[0]))
-    found = unborn.revive()
+    found = unborn.relive()
     assert found.agrees
     assert [each.name for each in found.respects[:5]] == [
         "tick",
@@ -257,7 +257,7 @@ def test_an_organism_that_was_just_born_agrees_and_has_nothing_to_save(
         "memory",
     ]
     with pytest.raises(InputError, match="has not lived a tick yet"):
-        unborn.revive(save=tmp_path / "a.npz")
+        unborn.relive(save=tmp_path / "a.npz")
 
 
 def test_a_damaged_record_is_no_other_life(
@@ -267,5 +267,5 @@ def test_a_damaged_record_is_no_other_life(
         raise Trouble("it is damaged")
 
     monkeypatch.setattr(RelivedLife, "of", fails)
-    with pytest.raises(InputError, match="organism 0 cannot be revived: it is damaged"):
-        revive(Archive(chain[0]), 0)
+    with pytest.raises(InputError, match="organism 0 cannot be relived: it is damaged"):
+        relive(Archive(chain[0]), 0)

@@ -1,7 +1,7 @@
 """Organisms drawn from finished runs are lived again: does each life agree with its record?
 
-`python benchmarks/revivals.py FOLDER [SHARE]` makes the runs in FOLDER (those that are there already are
-taken), revives a share of the number of organisms of each, and prints a table.
+`python benchmarks/relived.py FOLDER [SHARE]` makes the runs in FOLDER (those that are there already are
+taken), relives a share of the number of organisms of each, and prints a table.
 """
 
 import sys
@@ -17,7 +17,7 @@ from primordia import device
 from primordia.api import Run
 from primordia.errors import InputError
 from primordia.organism.organism import Organism
-from primordia.organism.revival import Revival
+from primordia.organism.reliving.compare import Reliving
 from primordia.random.keys import Purpose, bits, stream
 from primordia.random.wide import to_host, wide
 
@@ -68,14 +68,14 @@ NUMBERS = {"CartPole": 60, "Pong": 60, "HalfCheetah": 75, "BattleZone": 75, "for
 
 
 def main() -> None:
-    """Make the runs, revive organisms of each, and print a table."""
+    """Make the runs, relive organisms of each, and print a table."""
     device.prepare()
     folder, share = Path(sys.argv[1]), float(sys.argv[2]) if len(sys.argv) > 2 else 1.0
-    print("| task | special | organisms | revived | agree | from a checkpoint too | agree "
+    print("| task | special | organisms | relived | agree | from a checkpoint too | agree "
           "| ticks lived | seconds |", "|---" * 9 + "|", sep="\n", flush=True)  # fmt: skip
     rows = []
     for number, (task, special, run, count) in enumerate(runs(folder)):
-        row = revived(run, max(1, round(share * count)), number)
+        row = relived(run, max(1, round(share * count)), number)
         rows.append(row)
         print(f"| {task} | {special} | {' | '.join(f'{each:,}' for each in row)} |", flush=True)
     whole = " | ".join(f"{sum(column):,}" for column in zip(*rows, strict=True))
@@ -105,18 +105,18 @@ def forked(run: Run, ticks: int) -> Run:
     return run
 
 
-def revived(run: Run, count: int, number: int) -> tuple[int, ...]:
-    """Revive organisms of a run -> the numbers of a row of the table."""
+def relived(run: Run, count: int, number: int) -> tuple[int, ...]:
+    """Live organisms again of a run -> the numbers of a row of the table."""
     began, records = time.perf_counter(), run.opened()
     lives = np.arange(len(records.lives), dtype=np.uint32)
     words = to_host(bits(stream(wide(SEED), Purpose.EVALUATION, wide(number)), lives))
     drawn = np.argsort(words, kind="stable")[:count].tolist()
     agreed = later = agreed_later = ticks = 0
     for organism in (Organism(records, row) for row in drawn):
-        found = organism.revive()
+        found = organism.relive()
         agreed, ticks = agreed + agrees(run, found), ticks + found.ends - found.begins
         try:  # most died before the first of the checkpoints that are kept
-            found = organism.revive(since=found.ends - 1)
+            found = organism.relive(since=found.ends - 1)
         except InputError:
             continue
         later, agreed_later = later + 1, agreed_later + agrees(run, found)
@@ -124,7 +124,7 @@ def revived(run: Run, count: int, number: int) -> tuple[int, ...]:
     return len(records.lives), len(drawn), agreed, later, agreed_later, ticks, seconds
 
 
-def agrees(run: Run, found: Revival) -> bool:
+def agrees(run: Run, found: Reliving) -> bool:
     """Return whether a life agrees with its record; report it if not."""
     if not found.agrees:
         print(f"{run.path}: {found.to_dict()}", file=sys.stderr, flush=True)

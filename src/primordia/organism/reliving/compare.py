@@ -1,4 +1,4 @@
-"""Revival: a life is lived again and compared with its record."""
+"""A life is lived again and compared with its record."""
 
 from collections import deque
 from dataclasses import dataclass
@@ -33,7 +33,7 @@ class Respect:
 
 
 @dataclass(frozen=True)
-class Revival:
+class Reliving:
     """The outcome of a life that was lived again."""
 
     organism: int
@@ -72,7 +72,7 @@ class Revival:
 
 
 @on_its_device
-def revive(
+def relive(
     run: Records,
     organism: int,
     world: int = 0,
@@ -80,7 +80,7 @@ def revive(
     since: int | None = None,
     save: Path | None = None,
     film: Path | None = None,
-) -> Revival:
+) -> Reliving:
     """Live a life again, tick for tick, and compare it with its record.
 
     A living organism lives up to the run's newest checkpoint. There its memory is compared too. So
@@ -113,7 +113,7 @@ def revive(
         _refuse_restart(life)
         told = recorded(life)
     except Trouble as error:  # not status 1: no life was lived that could differ from the record
-        raise InputError(f"organism {organism} cannot be revived: {error}") from None
+        raise InputError(f"organism {organism} cannot be relived: {error}") from None
     parts = replay.parts_of(life) if film is not None else []
     course = _lived(life, save)
     found, notes = course.found(), _notes(archive, course)
@@ -126,7 +126,7 @@ def revive(
         notes.append(f"{film} was not made, since the life differs from its record")
     begin = "birth" if life.stored is None else "fork" if since is None else "checkpoint"
     place = organism, world, begin, life.begins, course.tick
-    return Revival(*place, respects, tuple(notes), tuple(written))
+    return Reliving(*place, respects, tuple(notes), tuple(written))
 
 
 def _lived(life: RelivedLife, save: Path | None) -> Course:

@@ -1,4 +1,4 @@
-"""`primordia lineage` on runs that were lived: their records, forks of forks, mates, and bad input."""
+"""`primordia phylogeny` on runs that were lived: their records, forks of forks, mates, and bad input."""
 
 import shutil
 from pathlib import Path
@@ -57,8 +57,8 @@ def family(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def lineage(run: Path, *words: object) -> pa.Table:
     """Return what the command writes for a run, without a word on the way."""
-    out = run.parent / "lineage.parquet"
-    done = here("lineage", run, *words, "--out", out)
+    out = run.parent / "phylogeny.parquet"
+    done = here("phylogeny", run, *words, "--out", out)
     assert (done.returncode, done.stdout, done.stderr) == (0, f"{out}\n", "")
     return pq.read_table(out)
 
@@ -179,7 +179,7 @@ def test_without_its_source_a_fork_begins_with_roots(tmp_path: Path) -> None:
     )
 
     def without() -> None:
-        done = here("lineage", lone, "--out", tmp_path / "a.csv")
+        done = here("phylogeny", lone, "--out", tmp_path / "a.csv")
         assert (done.returncode, done.stderr) == (0, word.format(lone))
         rows = pd.read_csv(tmp_path / "a.csv")
         assert len(rows) == len(own)
@@ -201,7 +201,7 @@ def test_without_its_source_a_fork_begins_with_roots(tmp_path: Path) -> None:
     without()
     shutil.rmtree(source)
     shutil.copytree(lone, source)  # a fork that names itself
-    done = here("lineage", lone, "--out", tmp_path / "a.csv")
+    done = here("phylogeny", lone, "--out", tmp_path / "a.csv")
     assert (done.returncode, done.stderr) == (0, word.format(source))
     assert len(pd.read_csv(tmp_path / "a.csv")) == len(own)
     shutil.rmtree(source)
@@ -218,8 +218,8 @@ def test_a_run_that_goes_on_is_read_as_of_its_newest_checkpoint(family: Path) ->
 def test_phylotrackpy_loads_a_run(family: Path) -> None:
     """It counts the living, and their ancestors apart from extinct lines."""
     out = family / "world0.csv"
-    rows = primordia.load(family / "again").lineage(world=0)
-    assert primordia.load(family / "again").lineage(world=0, out=out) is None
+    rows = primordia.load(family / "again").phylogeny(world=0)
+    assert primordia.load(family / "again").phylogeny(world=0, out=out) is None
     parents = parents_of(rows)
     alive = np.isinf(rows["destruction_time"].to_numpy())
     living = set(rows.filter(pa.array(alive))["id"].to_pylist())
@@ -266,13 +266,13 @@ def test_children_of_two_parents_list_both(tmp_path: Path) -> None:
     assert set(lineage(run, "--extant")["id"].to_pylist()) == ancestry(parents, alive)
     last = max(number for number in two if number < 10**12)
     assert set(lineage(run, last)["id"].to_pylist()) == ancestry(parents, {last})
-    assert here("lineage", run, "--out", tmp_path / "a.csv").returncode == 0
+    assert here("phylogeny", run, "--out", tmp_path / "a.csv").returncode == 0
     assert (
         pd.read_csv(tmp_path / "a.csv")["ancestor_list"].tolist()
         == rows["ancestor_list"].to_pylist()
     )
-    complains(here("lineage", run, "--collapse", "--out", tmp_path / "a.nwk"), 2, "two parents")
-    done = here("lineage", run, "--out", tmp_path / "a.nwk")
+    complains(here("phylogeny", run, "--collapse", "--out", tmp_path / "a.nwk"), 2, "two parents")
+    done = here("phylogeny", run, "--out", tmp_path / "a.nwk")
     assert done.returncode == 0
     assert done.stderr.count("\n") == 1
     assert "mates are left out" in done.stderr
@@ -309,34 +309,34 @@ def test_what_habitats_count_and_mutations_note_are_columns(tmp_path: Path) -> N
 def test_bad_input_is_one_line(family: Path, tmp_path: Path) -> None:
     run, out = family / "run", tmp_path / "a.csv"
     complains(
-        here("lineage", run, 10**6, "--out", out), 2, "no organism 1000000 was born in world 0"
+        here("phylogeny", run, 10**6, "--out", out), 2, "no organism 1000000 was born in world 0"
     )
-    complains(here("lineage", run, 3, "--world", 9, "--out", out), 2, "the worlds are 0 to 1")
-    complains(here("lineage", run, 3, "--extant", "--out", out), 2, "give one")
-    complains(here("lineage", run, "--out", tmp_path / "a.xls"), 2, ".parquet, .csv, .nwk")
-    complains(here("lineage", run), 2, "--out")
-    complains(here("lineage", tmp_path / "none", "--out", out), 2, "none")
+    complains(here("phylogeny", run, 3, "--world", 9, "--out", out), 2, "the worlds are 0 to 1")
+    complains(here("phylogeny", run, 3, "--extant", "--out", out), 2, "give one")
+    complains(here("phylogeny", run, "--out", tmp_path / "a.xls"), 2, ".parquet, .csv, .nwk")
+    complains(here("phylogeny", run), 2, "--out")
+    complains(here("phylogeny", tmp_path / "none", "--out", out), 2, "none")
     arm = tmp_path / "arm"
     shutil.copytree(run, arm / "a")
     live(arm / "b", 59, seed=20)
-    complains(here("lineage", arm, "--out", out), 2, "an arm of 2 runs")
+    complains(here("phylogeny", arm, "--out", out), 2, "an arm of 2 runs")
     (tmp_path / "folder.csv").mkdir()
-    complains(here("lineage", run, "--out", tmp_path / "folder.csv"), 2, "is a folder")
+    complains(here("phylogeny", run, "--out", tmp_path / "folder.csv"), 2, "is a folder")
     nothing = config({**WORLDS, "stop": {"ticks": 300}})
     with directory.create(tmp_path / "begun", nothing):
         pass
-    complains(here("lineage", tmp_path / "begun", "--out", out), 2, "has no checkpoint yet")
+    complains(here("phylogeny", tmp_path / "begun", "--out", out), 2, "has no checkpoint yet")
     with directory.create(tmp_path / "empty", nothing):
         engine = Engine(nothing)
         progress = Progress(limits=nothing.stop, wall_s=0.0, exact=True)
         recorder = loop.recorder_for(engine, tmp_path / "empty")
         checkpoint.save(tmp_path / "empty", engine.arrays(), recorder, progress)
-    complains(here("lineage", tmp_path / "empty", "--out", out), 2, "nothing has lived in it yet")
+    complains(here("phylogeny", tmp_path / "empty", "--out", out), 2, "nothing has lived in it yet")
     assert not out.exists()
 
 
 def test_a_missing_segment_is_one_line(family: Path, tmp_path: Path) -> None:
     run = Path(shutil.copytree(family / "run", tmp_path / "run"))
     next((run / "births").iterdir()).unlink()
-    complains(here("lineage", run, "--out", tmp_path / "a.csv"), 1, "is missing")
+    complains(here("phylogeny", run, "--out", tmp_path / "a.csv"), 1, "is missing")
     assert not (tmp_path / "a.csv").exists()

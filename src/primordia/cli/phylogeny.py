@@ -1,4 +1,4 @@
-"""The command `primordia lineage`: the phylogeny of a run for other programs."""
+"""The command `primordia phylogeny`: the phylogeny of a run for other programs."""
 
 from pathlib import Path
 from typing import Any
@@ -25,7 +25,7 @@ from primordia.cli.streams import report
 @click.option(
     "--collapse", is_flag=True, help="Leave out the dead that have a parent and only one child."
 )
-def lineage(run: Path, organism: int | None, out: Path, **choice: Any) -> None:
+def phylogeny(run: Path, organism: int | None, out: Path, **choice: Any) -> None:
     """Write the parent, the life and the death of each organism to a file for other programs.
 
     With ID, a birth number, only that organism and its ancestors are written. Organisms that lived before
@@ -36,8 +36,8 @@ def lineage(run: Path, organism: int | None, out: Path, **choice: Any) -> None:
     """
     from primordia.api import load
 
-    load(run).lineage(organism, out=out, say=report, **choice)
+    load(run).phylogeny(organism, out=out, say=report, **choice)
     click.echo(out)
 
 
-COMMANDS = (lineage,)
+COMMANDS = (phylogeny,)

@@ -1,4 +1,4 @@
-"""The table of `revive`: a relived life beside its record."""
+"""The table of `relive`: a relived life beside its record."""
 
 import json
 from pathlib import Path
@@ -6,8 +6,8 @@ from unittest.mock import patch
 
 import pytest
 
-from primordia.cli import revive
-from primordia.organism.revival import Respect, Revival
+from primordia.cli import relive
+from primordia.organism.reliving.compare import Reliving, Respect
 from tests.commands import here
 
 
@@ -24,9 +24,9 @@ def test_a_relived_life_is_shown_beside_its_record(begin: str, where: str) -> No
         Respect("lives", 0, 0.0),
     )
     notes, files = ("one thing", "another"), (Path("a.npz"), Path("b.gif"))
-    found = Revival(5, 2, begin, 1000, 4321, respects, notes, files)
-    with patch.object(revive, "show_table") as table:
-        revive._show(found)
+    found = Reliving(5, 2, begin, 1000, 4321, respects, notes, files)
+    with patch.object(relive, "show_table") as table:
+        relive._show(found)
     title, head, rows, below = table.call_args.args
     assert title == f"organism 5 of world 2, lived again from {where} at tick 1,000 to tick 4,321"
     assert list(head) == ["", "recorded", "relived", "agrees"]
@@ -54,12 +54,12 @@ DIFFERS = "organism 5 of world 2, lived again, differs from its record in: energ
 def test_all_differences_of_a_life_from_its_record_are_named(
     respects: tuple[Respect, ...], status: int, says: str, as_json: tuple[str, ...]
 ) -> None:
-    found = Revival(5, 2, "birth", 0, 9, respects, (), ())
+    found = Reliving(5, 2, "birth", 0, 9, respects, (), ())
     with (
         patch("primordia.api.load"),
-        patch("primordia.organism.revival.revive", return_value=found),
+        patch("primordia.organism.reliving.compare.relive", return_value=found),
     ):
-        done = here("revive", "RUN", 5, "--world", 2, *as_json)
+        done = here("relive", "RUN", 5, "--world", 2, *as_json)
     assert (done.returncode, done.stderr) == (status, says)
     if as_json:
         assert json.loads(done.stdout) == found.to_dict()

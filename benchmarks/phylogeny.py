@@ -1,4 +1,4 @@
-"""Seconds and peak memory of `primordia lineage`, by format, on a run of five million births.
+"""Seconds and peak memory of `primordia phylogeny`, by format, on a run of five million births.
 
 The run is forged: a Moran process (Moran 1958) of 1,024 cells, in which at each birth the child of a
 random organism takes the place of another one. It has all files of a run, and nothing in it has lived.
@@ -15,10 +15,10 @@ import numpy as np
 
 BIRTHS, CELLS, EACH_TICK = 5_000_000, 1024, 6
 WAYS = {
-    "lineage.parquet": [],
-    "lineage.csv": [],
-    "lineage.nwk": [],
-    "lineage.tsv": [],
+    "phylogeny.parquet": [],
+    "phylogeny.csv": [],
+    "phylogeny.nwk": [],
+    "phylogeny.tsv": [],
     "extant.parquet": ["--extant"],
     "extant.nwk": ["--extant", "--collapse"],
     "line.csv": [str(BIRTHS - 1)],
@@ -69,7 +69,7 @@ def moran(births: int, cells: int) -> tuple[dict[str, np.ndarray], dict[str, np.
 
 def measured(run: Path, out: Path, words: list[str]) -> tuple[float, float, float]:
     """Return wall seconds, processor seconds and peak gigabytes of one command."""
-    command = [sys.executable, "-m", "primordia", "lineage", str(run), *words, "--out", str(out)]
+    command = [sys.executable, "-m", "primordia", "phylogeny", str(run), *words, "--out", str(out)]
     began = time.perf_counter()
     child = os.posix_spawn(sys.executable, command, os.environ)
     _, status, usage = os.wait4(child, 0)
