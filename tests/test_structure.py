@@ -9,7 +9,7 @@ from pathlib import Path
 SOURCE = Path(__file__).parent.parent / "src" / "primordia"
 
 LAYERS = [
-    {"errors", "interrupts", "own_code", "printable"},
+    {"errors", "interrupts", "own_code", "printable", "progress"},
     {"cores", "jaxprs"},
     {"rounding"},
     {"compiled", "device", "files", "random", "tasks"},

@@ -2,6 +2,7 @@
 
 import errno
 import logging
+import sys
 
 import click
 
@@ -37,6 +38,8 @@ GROUPS = {
     "Trust": ("verify", "relive", "doctor"),
 }
 """Names of all commands, by what a user wants to do, in the order of the work."""
+WATCHED = ("run", "resume", "fork", "experiment", "watch")
+"""Names of commands with a display of their own."""
 
 
 class Commands(click.Group):
@@ -57,7 +60,8 @@ class Commands(click.Group):
 
 @click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="primordia")
-def commands() -> None:
+@click.pass_context
+def commands(ctx: click.Context) -> None:
     """Natural selection in any simulator: no reward, no fitness, no generations.
 
     \b
@@ -66,6 +70,10 @@ def commands() -> None:
     primordia replay runs/...            make a video of the champion's life
     primordia resume runs/...            go on with the run
     """
+    if ctx.invoked_subcommand not in WATCHED and sys.stderr.isatty():
+        from primordia.cli.waiting import bar  # rich takes a while to load
+
+        ctx.with_resource(bar())
 
 
 PARTS = (

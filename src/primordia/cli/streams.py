@@ -3,7 +3,7 @@
 import io
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 
 import click
@@ -19,9 +19,14 @@ class Printable(io.TextIOWrapper):
 
     title = "standard output"
     """name of the stream in errors"""
+    before: Callable[[], object] | None = None
+    """called once before the next output of any such stream; it removes what else is on the screen"""
 
     def write(self, text: str) -> int:
         """Write a text. Return its length."""
+        if (before := Printable.before) is not None:
+            Printable.before = None
+            before()
         with self._named():
             super().write(printable(text))
         return len(text)
@@ -38,6 +43,16 @@ class Printable(io.TextIOWrapper):
             yield
         except OSError as error:
             raise OSError(error.errno, error.strerror, self.title) from None
+
+
+@contextmanager
+def before_output(call: Callable[[], object]) -> Iterator[None]:
+    """Call a function once before the first output of the `with` block."""
+    Printable.before = call
+    try:
+        yield
+    finally:
+        Printable.before = None
 
 
 def prepare() -> None:

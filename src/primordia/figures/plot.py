@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from primordia import files
 from primordia.errors import InputError
 from primordia.figures import style
+from primordia.progress import steps
 from primordia.runs import bundle
 from primordia.runs.records import Records
 from primordia.settings import parts
@@ -57,7 +58,7 @@ def plot(
     else:
         files.make_folder(folder := out)
     with style.applied():
-        drawn = {name: draw(run, world) for name, draw in drawing.items()}
+        drawn = {name: drawing[name](run, world) for name in steps(list(drawing), "drawing")}
         return [
             path
             for name, figure in drawn.items()

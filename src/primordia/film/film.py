@@ -17,6 +17,7 @@ from primordia.film.moments import RATE, By, moments
 from primordia.film.shape import shape
 from primordia.history import series
 from primordia.organism import replay, video
+from primordia.progress import tell
 from primordia.runs import bundle
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records, on_its_device
@@ -93,6 +94,7 @@ def _pictures(
     for number, (seen, life) in enumerate(zip(of_cells, lived, strict=True)):
         counts = f"tick {shown[number]:,}   births {births[number]:,}   alive {alive[number]:,}"
         share = (number + 1) / len(shown)
+        tell("drawing", share)
         picture = frames.draw(form.draw(seen), counts, share, *life)
         yield picture
     for _ in range(STILL):

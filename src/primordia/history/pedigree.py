@@ -20,6 +20,7 @@ from primordia.history.climate import PastClimate
 from primordia.law.heredity import Heredity
 from primordia.law.world import BirthCause, Climate
 from primordia.mutations.contract import Mutation
+from primordia.progress import steps
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
 from primordia.runs.records import Records
@@ -42,7 +43,7 @@ def genomes(run: Records, rows: np.ndarray, redrawn: bool = False) -> np.ndarray
     device.prepare()
     pedigree, worlds = _Pedigree(run, redrawn), run.lives.world[rows]
     found = np.zeros((len(rows), run.layout.length), np.float32)
-    for world in np.unique(worlds):
+    for world in steps(np.unique(worlds), "rebuilding genomes"):
         found[worlds == world] = pedigree.genomes(rows[worlds == world])
     return found
 
@@ -66,7 +67,7 @@ class _Pedigree:
         notes = self._run.notes_of(self._lives.take(members))
         for place in np.flatnonzero(generation < 0):
             made.put(np.array([place]), self._at_the_fork(members[place])[None])
-        for number in range(int(generation.max()) + 1):
+        for number in steps(range(int(generation.max()) + 1), "rebuilding genomes"):
             now = np.flatnonzero(generation == number)
             for first in range(0, len(now), AT_ONCE):
                 some = now[first : first + AT_ONCE]

@@ -19,6 +19,7 @@ from primordia.history.births import genome_in, recorded
 from primordia.history.climate import PastClimate
 from primordia.law.heredity import Heredity
 from primordia.law.world import BirthCause, Climate
+from primordia.progress import steps
 from primordia.random.wide import wide
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
@@ -51,7 +52,7 @@ def rebuild_all(run: Records, organisms: Sequence[tuple[int, int]]) -> np.ndarra
     device.prepare()
     lineages = [run.lives.take(descent(run.lives, *each)) for each in organisms]
     past, genomes = PastClimate(run), []
-    for lineage in lineages:
+    for lineage in steps(lineages, "rebuilding genomes"):
         genome, births = _starting_point(run, lineage)
         for last, _ in _replayed(run, past, births, genome):
             genome = last

@@ -12,6 +12,7 @@ from primordia.law.law import Law
 from primordia.law.metabolism import Rates
 from primordia.organism.playing import in_jax, on_host
 from primordia.organism.playing.seats import Frozen, Manner, Seats, Stretch
+from primordia.progress import steps, tell
 from primordia.random.wide import Wide
 
 AT_ONCE = 128
@@ -91,7 +92,7 @@ def play(
         at_once: number of games played side by side.
     """
     size, parts = max((at_once or AT_ONCE) // games, 1), []
-    for first in range(0, len(players.genomes), size):
+    for first in steps(range(0, len(players.genomes), size), "playing"):
         some = slice(first, first + size)
         part_of_script = script and script._replace(actions=script.actions[some])
         part_of_frozen = frozen and frozen.take(some)
@@ -113,7 +114,7 @@ def lifespans_in_games(
     """Return each player's lifespan in each game, in ticks; `ticks` is the limit: int64 (K, E)."""
     at_once = AT_ONCE if players.habitat.kind == "host" else AT_ONCE_IN_JAX
     size, lived = max(at_once // games, 1), []
-    for first in range(0, len(players.genomes), size):
+    for first in steps(range(0, len(players.genomes), size), "playing"):
         # Players play in parts, since games keep all actions of their players.
         some = slice(first, first + size)
         part = frozen and frozen.take(some)
@@ -141,6 +142,7 @@ def _play_at_once(
         factor = factors[-1]
         actions.append(stretch.action[:, ::games])
         over = ~stretch.alive
+        tell("playing", float(over.mean()))
         if over.all():
             break
     results = [array.reshape(-1, games) for array in (length, over, food, course)]

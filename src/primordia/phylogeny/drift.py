@@ -17,6 +17,7 @@ from primordia import device
 from primordia.compiled import shared
 from primordia.phylogeny.diversity import hill_numbers
 from primordia.phylogeny.living import Turnover
+from primordia.progress import tell
 from primordia.random.keys import Purpose, below, encrypt, streams
 from primordia.random.wide import Wide, wide
 from primordia.runs.lives import Lives
@@ -104,6 +105,7 @@ def drift(lives: Lives, turnover: Turnover, ticks: np.ndarray, lines: int, seed:
     shadows = deal.replicates(1, FEWEST, MOST)
     largest, effective = (np.zeros((shadows, len(ticks))) for _ in range(2))
     for place, counts in enumerate(_dealt(deal, shadows, lines)):
+        tell("drawing neutral shadows", place / len(ticks))
         largest[:, place] = counts.max(axis=1) / max(deal.living[place], 1)
         effective[:, place] = hill_numbers(counts)[2]
     return Drift(counts / max(deal.living[-1], 1), largest, effective)

@@ -7,6 +7,7 @@ from typing import Any
 from primordia.experiments.campaign import Campaign
 from primordia.history.info import info
 from primordia.history.seeds import seeds_text
+from primordia.progress import steps
 from primordia.report.arms import arms, names
 from primordia.report.curves import panels
 from primordia.report.facts import facts
@@ -46,7 +47,10 @@ def of_run(run: Records, filmed: bool = True) -> dict[str, Any]:
         "words": words(run, numbers),
         "numbers": _numbers(numbers["worlds"]),
         "panels": panels(run),
-        "worlds": [view(run, world, f"seed {seeds[world]}", len(worlds)) for world in worlds],
+        "worlds": [
+            view(run, world, f"seed {seeds[world]}", len(worlds))
+            for world in steps(worlds, "drawing")
+        ],
         "left_out": f"{count(left_out, 'further world')} not shown" if left_out else "",
         "films": films(run) if filmed else None,
         "facts": [{"name": "", **facts(run, numbers)}],

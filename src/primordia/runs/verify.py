@@ -4,6 +4,8 @@ import time
 
 from primordia.engine.engine import Engine
 from primordia.errors import InputError
+from primordia.progress import tell
+from primordia.random.wide import to_host
 from primordia.runs import checkpoint
 from primordia.runs.archive import Archive
 from primordia.runs.arrays import world_ticks
@@ -29,13 +31,15 @@ def verify(run: Archive, listen: Listener | None = None) -> list[str]:
         )
     run.admit()
     engine = Engine(config)
-    limits = engine.limits({}, world_ticks(run.state))
+    lived = world_ticks(run.state)
+    limits = engine.limits({}, lived)
     recorder = recorder_for(engine, None)
     if (origin := checkpoint.origin(run.path, run.fault_in)) is not None:
         restore(engine, recorder, origin, run.arrays_of(origin))
     began = time.perf_counter()
     while engine.any_running(limits):
         recorder.append(engine.advance(limits))
+        tell("living again", to_host(engine.state.world.worlds.tick).sum() / lived.sum())
         if listen is not None:
             listen(Status(engine, time.perf_counter() - began))
     recorded = digests(last.digests, run.state, config.seeds)

@@ -33,6 +33,7 @@ from primordia.organism.mind import Mind
 from primordia.organism.reliving.in_jax import LifeInJax
 from primordia.organism.reliving.instant import Instant, Stretch
 from primordia.organism.reliving.on_host import LifeOnHost
+from primordia.progress import steps
 from primordia.random.keys import Purpose, bits, chance, stream
 from primordia.random.wide import Wide, wide
 from primordia.runs.arrays import world_ticks
@@ -143,7 +144,7 @@ class RelivedLife:
         with closing(self._alone(watched)) as alone:
             instant = self._start(alone)
             yield _as_stored(alone, instant), None
-            for first in range(self.begins, self.ends, alone.TICKS):
+            for first in steps(range(self.begins, self.ends, alone.TICKS), "living again"):
                 ticks = first + 1 + np.arange(alone.TICKS)
                 climate = self._climate(ticks)
                 count = min(alone.TICKS, self.ends - first)
