@@ -15,7 +15,7 @@ device.prepare()
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Begin with the files that take longest, so none is left to one process at the end."""
-    longest = ["docs", "exactness", "shipped", "jobs", "goldens_of_laws", "goldens", "fork", "resume",
+    longest = ["docs", "exactness", "shipped", "jobs", "goldens", "fork", "resume",
                "sharded", "contract", "life", "code", "evaluation"]  # fmt: skip
     places = {f"test_{about}.py": place for place, about in enumerate(longest)}
     items.sort(key=lambda item: places.get(item.path.name, len(places)))
@@ -33,16 +33,13 @@ settings.load_profile("patient")
 def _compiled_code(tmp_path_factory: pytest.TempPathFactory) -> None:
     """Share one cache of compiled code among all test processes, and all processes that they start.
 
-    The tests themselves keep it for the next time if JAX_COMPILATION_CACHE_DIR names a folder. Processes
-    that they start do not, since some are killed while they write.
+    It is kept for the next time if JAX_COMPILATION_CACHE_DIR names a folder.
     """
     root = tmp_path_factory.getbasetemp()
     shared = root.parent if root.name.startswith("popen") else root
-    of_others = str(shared / "compiled")
-    kept = os.environ.get("JAX_COMPILATION_CACHE_DIR", of_others)
-    jax.config.update("jax_compilation_cache_dir", kept)
+    cache = os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(shared / "compiled"))
+    jax.config.update("jax_compilation_cache_dir", cache)
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0)
-    os.environ["JAX_COMPILATION_CACHE_DIR"] = of_others
     os.environ["JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS"] = "0"
     # With a limit, which commands set, JAX writes nothing into a folder that has entries of a process
     # without one: each command then compiled everything again.
@@ -50,3 +47,10 @@ def _compiled_code(tmp_path_factory: pytest.TempPathFactory) -> None:
     os.environ["XDG_STATE_HOME"] = str(shared / "state")
     os.environ["XDG_CACHE_HOME"] = str(shared / "cache")
     memo.remember(passed=True)
+
+
+@pytest.fixture
+def _killed(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Give processes that are killed a cache of their own, since they may be writing into it."""
+    folder = tmp_path_factory.getbasetemp() / "compiled by the killed"
+    monkeypatch.setenv("JAX_COMPILATION_CACHE_DIR", str(folder))

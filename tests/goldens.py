@@ -19,6 +19,7 @@ import pyarrow.compute as pc
 import primordia
 from primordia import Run
 from primordia.runs.lives import Lives
+from tests.strange import STRANGE, TICKS
 
 FILE = Path(__file__).with_suffix(".json")
 PLAIN = ("world", "tick", "population", "births", "extinctions", "organism_ticks", "mean_age",
@@ -309,6 +310,7 @@ def others() -> Iterator[tuple[str, Case]]:
             ],
         ),
     )
+    yield "strange", toy(STRANGE, stop=ticks(TICKS))
 
 
 CASES = dict([*tasks(), *placements(), *others()])

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from primordia import device
+from primordia import Run, device
 from tests import plays
 from tests.goldens import CASES, FILE, entries, live, tasks
 
@@ -73,10 +73,14 @@ def test_each_task_is_played_as_it_was(file: str) -> None:
 
 
 def assert_lives_as_it_did(name: str, tmp_path: Path) -> None:
-    case, golden = CASES[name], GOLDENS["cases"][name]
+    case = CASES[name]
     if case.needs is not None:
         pytest.importorskip(case.needs)
-    run = live(case, tmp_path)
+    assert_lived_as_it_did(name, live(case, tmp_path))
+
+
+def assert_lived_as_it_did(name: str, run: Run) -> None:
+    case, golden = CASES[name], GOLDENS["cases"][name]
     if run.info()["versions"]["instruction_set"] != GOLDENS["instruction_set"]:
         pytest.skip(f"the goldens are exact on {GOLDENS['instruction_set']} only")
     actual = entries(case, run)

@@ -32,4 +32,4 @@ def test_steps_that_are_left_early_leave_the_whole_as_it_was() -> None:
         next(left), next(left)
         left.close()
         tell("after", 0.5)
-    assert [("left", 0), ("left", 0.25), ("after", 0.5)] == TOLD
+    assert TOLD == [("left", 0), ("left", 0.25), ("after", 0.5)]

@@ -24,6 +24,7 @@ from primordia.runs.archive import Archive
 from tests import commands
 from tests.history.test_rebuilding import assert_rebuilt
 from tests.strange import BLOCKS, QUIET, SEEDS, STRANGE, STRANGER, TICKS
+from tests.test_goldens import assert_lived_as_it_did
 from tests.worlds import Lived, config
 
 WORLDS = {"strange": STRANGE, "stranger": STRANGER, "blocks": BLOCKS}
@@ -126,8 +127,13 @@ def test_a_world_that_died_out_is_the_same_alone() -> None:
     assert alone.digests() == together.digests()[1:]
 
 
-def test_a_run_that_was_stopped_goes_on_as_if_it_had_not_been(whole: Lived, run: Path) -> None:
+def test_a_run_that_was_stopped_goes_on_as_if_it_had_not_been(
+    settings: dict[str, Any], whole: Lived, run: Path
+) -> None:
+    """The strange world also lives as it did."""
     assert digests(run) == whole.digests()
+    if settings is STRANGE:
+        assert_lived_as_it_did("strange", primordia.load(run))
     assert primordia.load(run).verify() == []
     assert_rebuilt(run)
 

@@ -134,6 +134,7 @@ def test_what_a_kill_leaves_is_taken_up(tmp_path: Path, alone: dict[str, list[st
     assert digests_of(begin(chosen.path)) == alone
 
 
+@pytest.mark.usefixtures("_killed")
 def test_a_process_that_dies_is_replaced_and_its_job_tried_again(
     tmp_path: Path, alone: dict[str, list[str]], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -16,6 +16,7 @@ from primordia.runs import loop
 from tests import commands
 from tests.experiments.meadows import write
 
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("_killed")]
 SETTINGS = {"stop": {"ticks": 200_000}, "seeds": 3, "jobs": {"worlds": 1}}
 
 
@@ -39,7 +40,6 @@ def kill_all(out: Path) -> None:
             os.kill(number, signal.SIGKILL)
 
 
-@pytest.mark.slow
 def test_jobs_end_when_their_command_is_killed(tmp_path: Path) -> None:
     """The command alone is killed: its processes write checkpoints and end by themselves."""
     out = tmp_path / "out"
@@ -57,7 +57,6 @@ def test_jobs_end_when_their_command_is_killed(tmp_path: Path) -> None:
     assert not processes_of(out)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_an_experiment_that_is_killed_five_times_has_the_same_worlds(
     tmp_path: Path, seed: int

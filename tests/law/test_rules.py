@@ -161,7 +161,7 @@ def assert_of_parents(lived: Lived, tick: int, before: Any, now: Any, places: li
     for row in children:
         cell = cells[row]
         if births["cause"][row] == "founder":
-            assert not now.known[cell][places].any()
+            assert not any(each[cell][places].any() for each in now)
             continue
         own = (births["id"] == births["parent"][row]) & (births["world"] == births["world"][row])
         parent = cells[np.flatnonzero(own)[0]]

@@ -18,6 +18,7 @@ from tests.commands import begin, here
 
 pytestmark = [
     pytest.mark.slow,
+    pytest.mark.usefixtures("_killed"),
     pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="/proc tells what is left"),
 ]
 KILLS, CHAINS = 25, 5

@@ -116,6 +116,7 @@ def interrupted(mill: Path, run: Path, how: signal.Signals, rng: random.Random) 
     return process.returncode
 
 
+@pytest.mark.usefixtures("_killed")
 @pytest.mark.parametrize(
     "seed", [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (1, 2))]
 )
