@@ -88,6 +88,7 @@ def test_check_says_what_is_wrong_by_its_status() -> None:
     complains(here("check", "gym:tests.ponds:Talking-v0"), 2, "space['says'] is a Text")
 
 
+@pytest.mark.slow
 def test_an_environment_of_the_users_own_is_part_of_the_run(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -119,6 +120,7 @@ def test_an_environment_of_the_users_own_is_part_of_the_run(
     complains(here(*resume), 2, "swamp_depth.py has changed")
 
 
+@pytest.mark.slow
 def test_an_environment_in_jax_is_lived_in_by_its_name_alone(tmp_path: Path) -> None:
     walk, run, whole = "gymnax:tests.walks:Choice", tmp_path / "run", tmp_path / "whole"
     assert (

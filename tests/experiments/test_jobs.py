@@ -84,6 +84,7 @@ def test_an_experiment_is_run_once_on_all_cores(
     assert (out / "results.md").read_bytes() == results
 
 
+@pytest.mark.slow
 def test_a_fork_goes_on_from_the_worlds_of_an_arm(tmp_path: Path) -> None:
     """Unchanged, it lives on as the arm would have."""
     folder, runs = tmp_path / "files", tmp_path / "runs"

@@ -148,6 +148,7 @@ def test_games_and_champions_are_reported(ponged: Path, monkeypatch: pytest.Monk
     assert of["founder", "sticky, no-ops"]["games"] == "1"
 
 
+@pytest.mark.slow
 def test_effects_of_mutations_are_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(str(EXPERIMENTS))
     script = import_module("effects")

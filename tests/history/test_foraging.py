@@ -21,7 +21,7 @@ from primordia.law.metabolism import ONE
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.commands import here
-from tests.worlds import MEADOW, config
+from tests.worlds import MEADOW, RING, config
 
 FOOD = 0.25
 FED: dict[str, Any] = {
@@ -42,8 +42,7 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     """Make runs with the same food for all: enough from tick 200 on, too little, and none."""
     folder = tmp_path_factory.mktemp("foraging")
     less = {**FED, "habitat": {**FED["habitat"], "food": FOOD / 2}}
-    none = {name: value for name, value in FED.items() if name not in ("metabolism", "seasons")}
-    none["habitat"] = {**FED["habitat"], "food": 0.0}
+    none = {**RING, "stop": FED["stop"]}
     for name, settings in {"fed": FED, "less": less, "none": none}.items():
         loop.start(config(settings), folder / name)
     return {name: folder / name for name in ("fed", "less", "none")}
@@ -106,11 +105,16 @@ def test_food_is_known_up_to_the_end_of_a_run(tmp_path: Path) -> None:
     compared = primordia.compare(tmp_path / "fed", tmp_path / "less")
     values = [arm.measured["food"].value.tolist() for arm in compared.arms]
     np.testing.assert_allclose(values, [[FOOD] * 2, [FOOD / 2] * 2])
-    (harvest, _), every = harvests(Archive(tmp_path / "fed"), 2), tmp_path / "every"
-    loop.start(config(FED, sample_every=1, stop={"ticks": 70}), every)
-    assert harvest.tick.tolist() == [0, 40, 70]
-    sampled = harvests(Archive(every), 2)[0]
-    for some, each in zip(harvest, sampled, strict=True):
+    for harvest in harvests(Archive(tmp_path / "fed"), 2):
+        assert harvest.tick.tolist() == [0, 40, 70]
+
+
+@pytest.mark.slow
+def test_samples_at_any_interval_are_of_the_same_totals(tmp_path: Path) -> None:
+    for every in (1, 40):
+        loop.start(config(FED, sample_every=every, stop={"ticks": 70}), tmp_path / str(every))
+    often, seldom = (harvests(Archive(tmp_path / str(every)), 2)[0] for every in (1, 40))
+    for some, each in zip(seldom, often, strict=True):
         np.testing.assert_array_equal(some, each[[0, 40, 70]])
 
 

@@ -106,7 +106,7 @@ def test_genomes_are_rebuilt_over_hundreds_of_generations(deep: Path) -> None:
 @pytest.mark.parametrize(
     "name",
     [
-        pytest.param(name, marks=() if name == "every child a founder" else pytest.mark.slow)
+        pytest.param(name, marks=pytest.mark.slow)
         for name in WORLDS  # tests/engine/test_strange.py has the other rules in one world
     ],
 )
@@ -121,6 +121,7 @@ def test_the_genomes_of_all_the_living_are_rebuilt(name: str, tmp_path: Path) ->
     assert set(births["world"].to_pylist()) == set(range(values.get("seeds", 1)))
 
 
+@pytest.mark.slow
 def test_genomes_are_rebuilt_while_a_run_continues(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -108,6 +108,7 @@ def test_figures_of_a_fork_begin_at_the_fork(mill: Path, tmp_path: Path, at: int
         assert (tmp_path / "foraging.svg").exists()
 
 
+@pytest.mark.slow
 def test_a_season_changes_lives_as_a_fork_does(mill: Path, tmp_path: Path) -> None:
     """They give the same bits, so a change that a fork has shown can be shipped as a season.
 

@@ -54,6 +54,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return begun(tmp_path_factory.mktemp("kept"))
 
 
+@pytest.mark.slow
 def test_a_bundle_is_lived_again_without_the_original_files(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -1,6 +1,5 @@
 """Settings: from TOML, a file and flags to one object, and back."""
 
-import json
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -105,7 +104,10 @@ def test_a_file_may_be_a_whole_task(tmp_path: Path) -> None:
     )
 
 
-def test_flags_override_the_file_and_the_file_overrides_the_task(tmp_path: Path) -> None:
+def test_flags_override_the_file_and_the_file_overrides_the_task(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("primordia.runs.loop.drive", lambda *_: None)  # nothing need be lived
     file, run = tmp_path / "mine.toml", tmp_path / "run"
     values = {
         "task": TASK,
@@ -132,7 +134,6 @@ def test_flags_override_the_file_and_the_file_overrides_the_task(tmp_path: Path)
     assert config.mutation["blocks"]["input_bias"]["scale"] == 0.5, "a flag of a block"
     assert config.mutation["founder_scale"] == tasks()[TASK]["mutation"]["founder_scale"], "task"
     assert config.seasons == (Schedule(kind="schedule", setting="hazard", at=9, value=0.0),)
-    assert json.loads(here("info", run, "--json").stdout)["ticks"] == 2
     helped = " ".join(here("fork", run, "--help").stdout.split())
     for part in (f"values of {run}", "cells of one world [8]", "--habitat.angle_limit"):
         assert part in helped

@@ -28,6 +28,7 @@ def test_a_mutation_must_say_how_it_makes_children_and_founders() -> None:
     assert Mutation.__abstractmethods__ == {"inherit", "founders"}
 
 
+@pytest.mark.slow
 def test_a_mutation_with_settings_for_the_blocks_of_a_layout() -> None:
     """It is the Gaussian one, whose contract is checked with settings for some blocks and for all."""
     mutation = Gaussian(probability=0.4, blocks={"slide-2": Block(scale=0.3)})

@@ -249,6 +249,7 @@ def test_what_cannot_be_written_is_one_clear_line(
     assert not (tmp_path / "none").exists()
 
 
+@pytest.mark.slow
 def test_wandb_does_not_try_to_reach_the_network(
     run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

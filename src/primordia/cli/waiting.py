@@ -1,7 +1,6 @@
 """The bar of progress of commands that take longer than two seconds, on a terminal."""
 
 import sys
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -20,7 +19,7 @@ class Patient(Progress):
 
     def get_renderables(self) -> Iterator[RenderableType]:
         """Yield the bar, or nothing before its time."""
-        if time.monotonic() - self.tasks[0].fields["began"] > PATIENCE:
+        if any((task.elapsed or 0) > PATIENCE for task in self.tasks):
             yield from super().get_renderables()
 
 
@@ -33,7 +32,7 @@ def bar() -> Iterator[Progress]:
     shown = Patient(
         *columns, console=console, transient=True, redirect_stdout=False, redirect_stderr=False
     )
-    task = shown.add_task("reading", total=None, began=time.monotonic())
+    task = shown.add_task("reading", total=None)
 
     def display(work: str, share: float) -> None:
         shown.update(task, description=work, total=1.0, completed=share)
