@@ -8,8 +8,10 @@ from primordia.cli.table import show_table, spread
 
 
 def test_a_table_has_names_on_the_left_and_numbers_on_the_right(
-    capsys: pytest.CaptureFixture[str],
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """Also on a terminal with colours, a table has only plain characters."""
+    monkeypatch.setenv("FORCE_COLOR", "1")
     show_table(
         "Lives", ("", "age", "kept"), [("first", "7", "1 %"), ("no", "12,345", "-")], ["Note."]
     )

@@ -100,7 +100,7 @@ def show_status(status: "CampaignStatus") -> None:
 
     from primordia.cli.campaign_view import table
 
-    Console(highlight=False).print(table(status))
+    Console(highlight=False, color_system=None).print(table(status))
 
 
 def _live_one(chosen: "Campaign", number: int, checkpoint_every: float, device: str) -> None:

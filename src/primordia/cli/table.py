@@ -22,7 +22,8 @@ def show_table(
         shown.add_column(name, justify="right")
     for row in rows:
         shown.add_row(*row)
-    console = Console(highlight=False, soft_wrap=True)
+    # Standard output spells out escapes, so the table has no styles.
+    console = Console(highlight=False, soft_wrap=True, color_system=None)
     whole = console.measure(shown, options=console.options.update(max_width=WIDEST))
     console.width = max(console.width, whole.maximum)
     console.print(title, shown, *notes, sep="\n")
