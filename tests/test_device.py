@@ -71,6 +71,7 @@ def python(program: str, *words: object, flags: str = "") -> str:
     ).stdout.strip()
 
 
+@pytest.mark.slow
 def test_looking_at_a_run_changes_no_setting_of_the_process(run: Path) -> None:
     python(LOOK, run)
 

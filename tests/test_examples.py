@@ -95,6 +95,7 @@ def test_what_an_own_mutation_lets_inherit_is_on_record(run: Archive) -> None:
     assert max(exponent.values()) > 5
 
 
+@pytest.mark.slow
 def test_genomes_come_back_from_records(run: Archive) -> None:
     assert_rebuilt(run.path)
 

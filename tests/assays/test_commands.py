@@ -75,6 +75,7 @@ def test_assays_of_lives_tell_what_python_returns(
     assert str(poles.path) in table.stdout
 
 
+@pytest.mark.slow
 def test_any_genome_file_can_be_assayed(poles: primordia.Run, tmp_path: Path) -> None:
     file = tmp_path / "some.safetensors"
     poles.export(file, 3, 4)

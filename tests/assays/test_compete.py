@@ -53,6 +53,7 @@ def kept() -> Iterator[list[Lives]]:
     assert not (causes == BirthCause.MUTANT).any()
 
 
+@pytest.mark.slow
 def test_the_longer_lived_takes_over_and_children_are_exact_copies(
     sides: tuple[Subjects, Subjects],
 ) -> None:

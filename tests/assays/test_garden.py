@@ -43,6 +43,7 @@ def test_the_reborn_live_as_in_an_evaluation(poles: primordia.Run) -> None:
     assert bed.reborn.tolist() == [each.lived.ticks.mean() for each in evaluated]
 
 
+@pytest.mark.slow
 def test_founders_live_in_the_changed_habitat_too(poles: primordia.Run) -> None:
     free = garden(poles.opened(), each=4, games=1, ticks=400)
     heavy = garden(poles.opened(), each=4, games=1, ticks=400, habitat={"angle_limit": 2.0})

@@ -81,6 +81,7 @@ def test_a_changed_habitat_must_have_the_setting(poles: primordia.Run) -> None:
         of_run(poles.opened(), habitat={"gravity": 1.0})
 
 
+@pytest.mark.slow
 def test_of_a_task_the_longest_lived_founders_live() -> None:
     best = of_task("CartPole-survival")
     everyone = of_task("CartPole-survival", range(FOUNDERS))

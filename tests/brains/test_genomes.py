@@ -63,6 +63,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> primordia.Run:
     return primordia.load(folder / "run")
 
 
+@pytest.mark.slow
 def test_founders_of_a_run_have_the_genomes_of_its_ancestors(
     run: primordia.Run, tmp_path: Path
 ) -> None:

@@ -116,6 +116,7 @@ def test_the_command_shows_tables_and_draws_a_figure(runs: list[Path], tmp_path:
         assert str(tmp_path / "new" / name) in done.stdout
 
 
+@pytest.mark.slow
 def test_json_is_one_object_and_is_the_same_each_time(runs: list[Path], tmp_path: Path) -> None:
     one, two = (here("compare", *runs[:2], "--json", "--out", tmp_path) for _ in range(2))
     assert one.stdout == two.stdout
@@ -129,6 +130,7 @@ def test_json_is_one_object_and_is_the_same_each_time(runs: list[Path], tmp_path
     )
 
 
+@pytest.mark.slow
 def test_runs_of_the_same_seeds_are_compared_pair_by_pair(runs: list[Path], tmp_path: Path) -> None:
     """A run of other seeds beside them has no pairs; all are corrected for two contrasts."""
     twin = tmp_path / "twin"

@@ -48,6 +48,7 @@ def test_delta_changes_sign_when_the_runs_are_swapped(run: list, reference: list
     assert contrast(one, one).word in ("negligible", None)
 
 
+@pytest.mark.slow
 @given(SOME, SOME, st.integers(1, 20))
 def test_delta_grows_with_the_figures(run: list, reference: list, by: int) -> None:
     more = [(value + by, known) for value, known in run]

@@ -40,6 +40,7 @@ def test_every_tick_and_every_death_counts_once(
     assert (measured.curve == measured.lived / np.maximum(measured.deaths, 1)).all()
 
 
+@pytest.mark.slow
 def test_worlds_that_never_saturate_are_compared_by_ticks_for_each_death(tmp_path: Path) -> None:
     """They are the mean lifespan where accidents kill, or age. Saturation is not mentioned."""
     runs, hazards = [], {"rough": 0.04, "mild": 0.01}

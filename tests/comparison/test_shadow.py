@@ -204,6 +204,7 @@ def test_the_command_prints_what_python_gives(poles: primordia.Run) -> None:
     complains(here("shadow", poles.path.parent / "no"), 2, "no")
 
 
+@pytest.mark.slow
 def test_organisms_are_spread_over_all_births(poles: primordia.Run) -> None:
     """Each world gives the number asked for, or all that it has."""
     lives = poles.lives()

@@ -66,7 +66,7 @@ def test_every_task_is_an_environment_that_gymnasium_accepts(task: str) -> None:
     ("task", "settings"),
     [
         pytest.param("CartPole-survival", {"cells": 6, "seeds": 2}, marks=pytest.mark.slow),
-        ("Pong-survival", test_atari_lives.SETTINGS),
+        pytest.param("Pong-survival", test_atari_lives.SETTINGS, marks=pytest.mark.slow),
         ("Reacher-forager-costly", test_mujoco_lives.SMALL),
     ],
 )

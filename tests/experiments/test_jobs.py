@@ -179,6 +179,7 @@ def test_a_job_that_fails_stops_no_other_job(tmp_path: Path) -> None:
     assert here("experiment", file, "--out", out).returncode == 0
 
 
+@pytest.mark.slow
 def test_a_job_whose_disk_is_full_fails_alone_and_is_lived_later(
     tmp_path: Path, alone: dict[str, list[str]], monkeypatch: pytest.MonkeyPatch
 ) -> None:

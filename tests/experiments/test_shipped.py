@@ -49,6 +49,7 @@ def test_settings_of_trials_are_valid(file: Path) -> None:
         load(values["task"], merged(values, arm))
 
 
+@pytest.mark.slow
 def test_trials_measure_what_mutants_inherit(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

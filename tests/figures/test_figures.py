@@ -140,6 +140,7 @@ def pictures(run: Path) -> list[Path]:
     return paths
 
 
+@pytest.mark.slow
 def test_plot_writes_every_figure_in_two_formats_to_the_runs_folder(
     run: Path, pictures: list[Path]
 ) -> None:
@@ -156,6 +157,7 @@ def test_svg_keeps_text_as_text_and_dots_as_a_picture(pictures: list[Path]) -> N
             assert path.stat().st_size < 2**19
 
 
+@pytest.mark.slow
 def test_figures_have_the_same_bytes_under_any_style_of_the_user(
     run: Path, pictures: list[Path], tmp_path: Path
 ) -> None:

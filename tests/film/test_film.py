@@ -36,6 +36,7 @@ def test_a_world_is_filmed_with_the_life_of_the_oldest_beside_it(poles: primordi
     assert np.abs(np.diff(light[-films.STILL // 2 :], axis=0)).mean() < 1
 
 
+@pytest.mark.slow
 def test_a_film_by_ticks_of_a_chosen_organism(poles: primordia.Run, tmp_path: Path) -> None:
     file = poles.film(tmp_path / "film.gif", by="ticks", ticks=(100, 160), organism=3)
     frames = iio.imread(file)

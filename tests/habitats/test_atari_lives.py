@@ -83,6 +83,7 @@ def test_runs_are_exact(pong: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPa
     assert after(fork, 140) == after(whole, 140)
 
 
+@pytest.mark.slow
 def test_emulators_that_are_free_are_used_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -125,6 +125,7 @@ def test_no_ops_are_drawn_from_0_to_the_maximum() -> None:
     assert len(frames) == 4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("game", marked("breakout"))
 def test_a_start_after_no_ops_is_the_same_whatever_starts_are_kept(game: str) -> None:
     """Each start equals that of an emulator that has played nothing else, and so does its picture."""

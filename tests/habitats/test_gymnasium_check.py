@@ -132,6 +132,7 @@ def test_robots_go_on_from_their_state(name: str) -> None:
     assert measure(name, {}, ()).saving == "snapshot"
 
 
+@pytest.mark.slow
 def test_what_has_no_plain_state_is_lived_again() -> None:
     pytest.importorskip("Box2D")
     assert measure("LunarLander-v3", {}, ()).saving == "replay"

@@ -211,6 +211,7 @@ def test_wrong_settings_are_one_line(habitat: dict[str, Any], says: str) -> None
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.slow
 def test_bodies_that_begin_again_are_those_of_the_births(monkeypatch: pytest.MonkeyPatch) -> None:
     words, reset = dict[int, list[int]](), Gymnasium.reset
 
@@ -231,6 +232,7 @@ def test_bodies_that_begin_again_are_those_of_the_births(monkeypatch: pytest.Mon
     assert words == born
 
 
+@pytest.mark.slow
 def test_where_nothing_can_be_saved_bodies_begin_again_and_that_is_counted(tmp_path: Path) -> None:
     settings = {**HOSTED, "habitat": {"workers": 0}, "stop": {"ticks": 30}}
     run = primordia.run("gym:tests.ponds:Hidden-v0", tmp_path / "run", settings)

@@ -19,6 +19,7 @@ class Ruined(Undefined, Overwriting):
     """A walk with the faults of both."""
 
 
+@pytest.mark.slow
 def test_what_is_wrong_is_found() -> None:
     assert measure(Gymnax(env=f"{__name__}:Ruined")).faults == [
         "an observation is not finite",

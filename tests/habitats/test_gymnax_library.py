@@ -57,6 +57,7 @@ def test_craftax_keeps_the_contract(name: str) -> None:
     check_habitat(Gymnax(env=name, food="reward"))
 
 
+@pytest.mark.slow
 def test_a_task_is_made_from_lives_at_random() -> None:
     task = values("CartPole-v1")
     assert 1 / 40 < task["replication"] < 1 / 15

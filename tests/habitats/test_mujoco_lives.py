@@ -34,6 +34,7 @@ def digests(run: primordia.Run) -> list[str]:
     return [world["digest"] for world in run.info()["worlds"]]
 
 
+@pytest.mark.slow
 def test_a_run_that_was_stopped_continues_exactly(reachers: Path, tmp_path: Path) -> None:
     """This holds also where food is measured from the body's place before the stop."""
     stop = {"ticks": 67, "until": "none"}
@@ -44,6 +45,7 @@ def test_a_run_that_was_stopped_continues_exactly(reachers: Path, tmp_path: Path
     assert digests(run) == digests(primordia.load(reachers))
 
 
+@pytest.mark.slow
 def test_evaluations_are_cut_where_gymnasium_cuts(reachers: Path) -> None:
     evaluation = primordia.load(reachers).oldest().evaluate(games=3, ticks=400)
     assert evaluation.whole is not None

@@ -47,6 +47,7 @@ def test_a_users_model_lives_and_is_not_resumed_with_another_model(tmp_path: Pat
     assert primordia.load(box).info()["worlds"][0]["ticks"] == 30
 
 
+@pytest.mark.slow
 def test_a_model_named_by_a_flag_is_found_from_elsewhere(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

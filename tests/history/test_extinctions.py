@@ -196,6 +196,7 @@ def test_the_crashes_of_a_fork_are_those_since_it_was_forked(
     assert sum(later) < sum(whole)
 
 
+@pytest.mark.slow
 def test_founders_that_fill_a_world_and_die_out_are_no_crash(tmp_path: Path) -> None:
     loop.start(config({**CLOCKWORK, "stop": {"ticks": 100}}), tmp_path / "run")
     worlds = primordia.load(tmp_path / "run").info()["worlds"]

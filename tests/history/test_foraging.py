@@ -78,6 +78,7 @@ def test_food_between_samples_is_the_food_gathered_over_the_ticks_lived(
         np.testing.assert_allclose(rate, expected)
 
 
+@pytest.mark.slow
 def test_only_runs_with_food_have_the_figure(runs: dict[str, Path], tmp_path: Path) -> None:
     for name, drawn in (("fed", True), ("none", False)):
         files = [path.name for path in primordia.Run(runs[name]).plot(tmp_path / name)]
@@ -97,6 +98,7 @@ def test_the_figure_of_a_fork_that_has_not_lived_says_so(
     assert "no samples yet" in {text.get_text() for text in drawn.axes[0].texts}
 
 
+@pytest.mark.slow
 def test_food_is_known_up_to_the_end_of_a_run(tmp_path: Path) -> None:
     """The last sample may be long before the end."""
     for name, food in (("fed", FOOD), ("less", FOOD / 2)):
@@ -200,6 +202,7 @@ def test_food_of_intervals_shorter_than_a_tick_is_that_of_the_tick() -> None:
     np.testing.assert_allclose(harvest.between(np.arange(5) / 2), [0.25, 0.25, 0.5, 0.5])
 
 
+@pytest.mark.slow
 def test_food_that_no_organism_can_live_on_has_no_break_even(tmp_path: Path) -> None:
     hungry = {"metabolism": {"store": 30.0, "gain": 0.0}, "stop": {"ticks": 150}}
     loop.start(config(FED, **hungry), tmp_path / "run")

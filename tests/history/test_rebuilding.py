@@ -103,6 +103,7 @@ def test_genomes_are_rebuilt_over_hundreds_of_generations(deep: Path) -> None:
     assert_rebuilt(deep)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [

@@ -33,6 +33,7 @@ def lived(folder: Path, followed: list[Ground]) -> primordia.Run:
     return primordia.load(folder)
 
 
+@pytest.mark.slow
 def test_the_threshold_equals_that_in_the_records(tmp_path: Path) -> None:
     followed: list[Ground] = []
     lives = lived(tmp_path / "run", followed).lives()

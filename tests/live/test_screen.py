@@ -104,6 +104,7 @@ def test_the_oldest_organism_is_shown_and_then_the_next() -> None:
     assert "nothing is alive" in "\n".join(screen(made, "o", 80, 24))
 
 
+@pytest.mark.slow
 def test_what_it_does_next_is_what_it_then_does() -> None:
     """The food of this habitat is the action, of which the motor draws a part."""
     watch = {**MEADOW, "habitat": {"name": "tests.toys:Watch"}, "brain": {"kind": "feed-forward"}}

@@ -60,6 +60,7 @@ def test_the_exponent_stays_within_its_bounds(quarters: int, bound: str) -> None
     assert getattr(mutation, bound) == quarters
 
 
+@pytest.mark.slow
 def test_noise_is_that_of_the_gaussian_times_its_length() -> None:
     fixed, mutation = Gaussian(probability=1.0, scale=0.5), Heritable(probability=1.0, scale=0.5)
     base = inherited(fixed, LAYOUT, family(fixed))[0]

@@ -13,6 +13,7 @@ from primordia.organism.export import export
 from tests.commands import complains, here
 
 
+@pytest.mark.slow
 def test_an_organism_of_no_world_is_one_line(mill: Path, tmp_path: Path) -> None:
     file = tmp_path / "a.safetensors"
     words = "export", mill, file, "--organism", 0, "--world", 3

@@ -24,6 +24,9 @@ from primordia.runs.archive import Archive
 from tests.toys import Mirror
 from tests.worlds import MEADOW, MILL, config
 
+MIRROR = pytest.param("mirror", marks=pytest.mark.slow)
+"""Habitats on the host are also lived in again by tests of simulators, which share a law."""
+
 
 @pytest.fixture(scope="module")
 def mirror(tmp_path_factory: pytest.TempPathFactory) -> Path:
@@ -60,7 +63,7 @@ def assert_ends_as_recorded(life: RelivedLife) -> list[Stretch]:
     return seen
 
 
-@pytest.mark.parametrize("which", ["mill", "poles", "mirror"])
+@pytest.mark.parametrize("which", ["mill", "poles", MIRROR])
 def test_the_living_reach_their_recorded_state_when_lived_again(
     which: str, request: pytest.FixtureRequest
 ) -> None:
@@ -72,7 +75,7 @@ def test_the_living_reach_their_recorded_state_when_lived_again(
         assert_ends_as_recorded(RelivedLife.of(run, lives.id[row], lives.world[row]))
 
 
-@pytest.mark.parametrize("which", ["mill", "mirror"])
+@pytest.mark.parametrize("which", ["mill", MIRROR])
 def test_the_dead_die_in_their_recorded_tick_when_lived_again(
     which: str, request: pytest.FixtureRequest
 ) -> None:
@@ -86,7 +89,7 @@ def test_the_dead_die_in_their_recorded_tick_when_lived_again(
             assert_ends_as_recorded(RelivedLife.of(run, lives.id[row], lives.world[row]))
 
 
-@pytest.mark.parametrize("which", ["mill", "mirror"])
+@pytest.mark.parametrize("which", ["mill", MIRROR])
 def test_a_life_older_than_a_fork_continues_from_the_fork(
     which: str, request: pytest.FixtureRequest, tmp_path: Path
 ) -> None:
@@ -117,6 +120,7 @@ def test_a_second_life_of_another_length_compiles_nothing(
     assert "Finished XLA compilation" not in caplog.text
 
 
+@pytest.mark.slow
 def test_a_life_older_than_a_fork_is_refused_if_bodies_cannot_be_saved(
     mirror: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -160,7 +164,7 @@ def test_an_accident_kills_only_what_dies_of_nothing_else() -> None:
     assert found.cause.tolist() == [*causes, Cause.HAZARD, *BODILY]
 
 
-@pytest.mark.parametrize("which", ["mill", "mirror"])
+@pytest.mark.parametrize("which", ["mill", MIRROR])
 def test_a_life_begins_with_the_store_in_force_in_the_tick_of_its_birth(
     which: str, request: pytest.FixtureRequest
 ) -> None:
@@ -174,6 +178,7 @@ def test_a_life_begins_with_the_store_in_force_in_the_tick_of_its_birth(
         assert held["world.organisms.energy"] == run.lives.born[row] * ONE
 
 
+@pytest.mark.slow
 def test_a_habitat_on_the_host_is_closed_after_a_life(
     mirror: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -89,6 +89,7 @@ def test_a_record_that_differs_from_the_life_is_noticed(mill: Archive, said: str
             list(life.stretches())
 
 
+@pytest.mark.slow
 def test_a_game_counts_what_is_gathered_until_it_is_over(mill: Archive) -> None:
     """Games of one player end at different ticks; when one is over, the others go on."""
     players = players_of(mill, [(0, 0), (5, 0)])
@@ -102,6 +103,7 @@ def test_a_game_counts_what_is_gathered_until_it_is_over(mill: Archive) -> None:
             assert value == expected, name
 
 
+@pytest.mark.slow
 def test_games_have_the_food_of_lives_and_the_latest_climate_of_their_world(tmp_path: Path) -> None:
     """Life becomes harder and then easier, so its end changes."""
 

@@ -93,6 +93,7 @@ def test_only_what_is_frozen_changes_a_game(
         np.testing.assert_array_equal(spans, held.ticks)
 
 
+@pytest.mark.slow
 def test_watched_games_show_the_inputs_of_brains(
     players: Players, monkeypatch: pytest.MonkeyPatch
 ) -> None:

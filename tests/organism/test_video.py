@@ -36,6 +36,7 @@ def test_a_video_shows_the_whole_of_a_short_life(poles: Path, tmp_path: Path) ->
     assert seen[0].tobytes() != seen[-1].tobytes()
 
 
+@pytest.mark.slow
 def test_a_video_shows_the_beginning_and_the_end_of_a_long_life(
     poles: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -50,6 +51,7 @@ def test_a_video_shows_the_beginning_and_the_end_of_a_long_life(
     assert len(frames(Path(done.stdout.strip()))) == 50 + 50 + 50 + 50
 
 
+@pytest.mark.slow
 def test_lives_are_shown_side_by_side_in_the_order_of_birth(poles: Path) -> None:
     lives = Archive(poles).lives
     short = np.flatnonzero(lives.died & (lives.lifespan < 60))

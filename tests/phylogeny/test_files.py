@@ -293,6 +293,7 @@ def test_a_fork_that_begins_to_recombine_lists_mates_of_its_own(
     assert phyloframe.alifestd_validate(rows.drop(columns="ancestor_id"))
 
 
+@pytest.mark.slow
 def test_what_habitats_count_and_mutations_note_are_columns(tmp_path: Path) -> None:
     run = tmp_path / "run"
     loop.start(config({**CLOCKED, "stop": {"ticks": 300}}), run)

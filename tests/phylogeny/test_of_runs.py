@@ -97,6 +97,7 @@ def test_a_line_goes_on_through_forks(run: Path, forked: Path, world: int) -> No
     assert part == primordia.load(run).ancestors(older, world).to_dict()
 
 
+@pytest.mark.slow
 def test_a_line_in_a_fork_with_another_future_has_the_changes_of_both(
     run: Path, tmp_path: Path
 ) -> None:
@@ -157,6 +158,7 @@ def test_changes_before_a_fork_are_left_out_if_the_code_there_is_untrusted(
     assert "The changes before a fork are unknown: its code is not trusted." in printed
 
 
+@pytest.mark.slow
 def test_lines_in_a_fork_are_founded_at_it(forked: Path) -> None:
     (lines,) = primordia.load(forked).lineages(world=1)
     assert lines.ticks[0] == 200

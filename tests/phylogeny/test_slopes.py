@@ -90,6 +90,7 @@ def test_an_advantage_that_is_put_in_comes_out_as_the_slope() -> None:
     assert np.mean(found) == pytest.approx(-np.log(1 - advantage) / size, rel=0.15)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("quick")
 def test_a_strong_advantage_is_told_from_drift() -> None:
     p = []

@@ -50,6 +50,7 @@ def links(trees: list[dendropy.Tree]) -> dict[int, tuple[int | None, float]]:
     }
 
 
+@pytest.mark.slow
 @given(FORESTS)
 def test_a_table_is_in_the_standard_and_in_phyloframes_format(worlds: list) -> None:
     whole = forest(*worlds)

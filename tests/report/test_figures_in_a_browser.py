@@ -26,6 +26,7 @@ def world(torus_page: Path, page: Page) -> dict[str, Any]:
     return {**content["worlds"][0], "palette": content["palette"]}
 
 
+@pytest.mark.slow
 def test_a_chart_shows_values_and_zooms_by_mouse_keys_and_buttons(
     cart_page: Path, page: Page
 ) -> None:
@@ -115,6 +116,7 @@ def test_the_page_scrolls_by_the_wheel_until_the_picture_is_chosen(
     assert not differ(page.pixels(canvas), whole)
 
 
+@pytest.mark.slow
 def test_a_film_moves_by_keys_plays_and_shows_the_organism_of_a_cell(
     torus: Path, torus_page: Path, page: Page
 ) -> None:

@@ -118,6 +118,7 @@ def test_no_name_of_a_run_is_read_as_html(cart: Path, tmp_path: Path, page: Page
     assert page.complaints() == []
 
 
+@pytest.mark.slow
 def test_the_arms_of_an_experiment_stand_side_by_side(tmp_path: Path, page: Page) -> None:
     file, out = herds(tmp_path), tmp_path / "out"
     for job in (0, 1):

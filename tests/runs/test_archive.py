@@ -51,6 +51,7 @@ def checked(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
     return counted
 
 
+@pytest.mark.slow
 def test_no_file_is_checked_twice(fork: Path, checked: Counter[str]) -> None:
     """This holds for settings, genomes, checkpoints, segments and the origin of a fork."""
     run = Archive(fork)

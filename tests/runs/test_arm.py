@@ -107,6 +107,7 @@ def test_an_exported_genome_tells_the_seed_of_its_own_world(
         }
 
 
+@pytest.mark.slow
 def test_figures_of_an_arm_are_put_in_its_folder(runs: Path) -> None:
     for path in primordia.load(runs / "arm").plot(world=2, figures=["ages", "space-time"]):
         assert path.parent == runs / "arm" / "figures"

@@ -21,6 +21,7 @@ from tests.strangers import PARTS, POND, begun, forget
 from tests.trouble import SMALL
 
 
+@pytest.mark.slow
 def test_a_run_holds_the_code_that_it_executes(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -52,7 +53,9 @@ def test_a_run_does_not_go_on_with_changed_code(folder: Path, name: str) -> None
     ("start", "small"),
     [
         (COMMAND, ("Pong-survival", "--cells", "2", "--quiet")),
-        ([str(Path(sys.executable).with_name("primordia"))], SMALL),
+        pytest.param(
+            [str(Path(sys.executable).with_name("primordia"))], SMALL, marks=pytest.mark.slow
+        ),
     ],
 )
 def test_no_file_of_the_current_folder_takes_the_place_of_an_installed_one(
@@ -71,6 +74,7 @@ def test_no_file_of_the_current_folder_takes_the_place_of_an_installed_one(
     assert (done.returncode, done.stderr) == (0, "")
 
 
+@pytest.mark.slow
 def test_a_cache_of_compiled_code_is_not_executed(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -159,6 +159,7 @@ def test_ctrl_c_before_a_fork_has_begun_leaves_an_empty_folder(
     assert done.stderr.strip() == f"Stopped before {tmp_path} had begun"
 
 
+@pytest.mark.slow
 def test_forks_are_compared_where_they_have_time_in_common(mill: Path, tmp_path: Path) -> None:
     late = primordia.load(mill).fork(1500, tmp_path / "late", stop={"ticks": 1600}).path
     with pytest.raises(InputError, match=r"forked at tick 1,500, .* ends at 1,500"):
@@ -176,6 +177,7 @@ def test_forks_are_compared_where_they_have_time_in_common(mill: Path, tmp_path:
             assert arm.pace.lived.sum() == (within.ended - within.seen).sum()
 
 
+@pytest.mark.slow
 def test_another_seed_is_another_future_of_the_same_past(poles: Path, tmp_path: Path) -> None:
     two = primordia.load(poles).fork(800, tmp_path / "two", seed=5).path
     again = primordia.load(poles).fork(800, tmp_path / "again", seed=5).path
@@ -231,6 +233,7 @@ def climate(run: Path) -> dict[str, Any]:
     return primordia.load(run).info()["worlds"][0]["climate"]
 
 
+@pytest.mark.slow
 def test_changed_settings_hold_and_others_stay_as_seasons_left_them(
     mill: Path, tmp_path: Path
 ) -> None:

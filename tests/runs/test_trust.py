@@ -91,6 +91,7 @@ def test_looking_executes_no_code_of_a_run(folder: Path, monkeypatch: pytest.Mon
     assert not {"pond", "pond_depth"} & set(sys.modules)
 
 
+@pytest.mark.slow
 def test_parts_in_several_files_are_trusted_together(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

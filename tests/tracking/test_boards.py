@@ -15,6 +15,7 @@ from primordia.tracking.weights_and_biases import SERVICE, WeightsAndBiases
 from tests.dashboards import event_rows, events, offline_records
 
 
+@pytest.mark.slow
 def test_a_run_of_wandb_has_ticks_as_its_axis_and_nothing_of_the_machine(tmp_path: Path) -> None:
     board = WeightsAndBiases(tmp_path)
     board.add(World("seed-1", "2" * 16, "g", {"seed": 1}), [{"tick": 10, "living": 3}])

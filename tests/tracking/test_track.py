@@ -90,6 +90,7 @@ def test_another_call_replaces_what_was_written(run: Path, tmp_path: Path) -> No
     shows(tmp_path, run)
 
 
+@pytest.mark.slow
 def test_arms_have_folders_and_all_worlds_one_group(tmp_path: Path) -> None:
     out = tmp_path / "out"
     file = herds(tmp_path)
@@ -104,6 +105,7 @@ def test_arms_have_folders_and_all_worlds_one_group(tmp_path: Path) -> None:
         shows(tmp_path, out / arm, f"{arm}/")
 
 
+@pytest.mark.slow
 def test_files_of_others_are_left_alone(run: Path, tmp_path: Path) -> None:
     (tmp_path / "seed-3").mkdir()
     own = tmp_path / "seed-3" / "events.out.tfevents.1"

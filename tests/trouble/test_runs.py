@@ -141,6 +141,7 @@ def test_a_run_with_nothing_left_to_do_says_how_to_continue(run: Path, through: 
     assert info["limits"] == {"ticks": TICKS + 1, "births": None, "until": None}
 
 
+@pytest.mark.slow
 def test_saturated_worlds_continue_without_the_limit_of_saturation(tmp_path: Path) -> None:
     """No body dies in this meadow, and accidents are very rare."""
     run = tmp_path / "run"
