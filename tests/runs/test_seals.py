@@ -11,8 +11,10 @@ import numpy as np
 import pytest
 
 import primordia
+from primordia import progress
 from primordia.errors import InputError, Trouble
 from primordia.history.info import info
+from primordia.random.wide import wide
 from primordia.runs import checkpoint, loop
 from primordia.runs import verify as verification
 from primordia.runs.archive import Archive
@@ -156,15 +158,17 @@ def test_verify_names_each_world_that_differs_with_its_own_seed(
     """Three invented worlds are lived again in two chunks. The second repeats as recorded."""
     ends, heard = {"recorded": ["a" * 64, "b" * 64, "c" * 64]}, list[Any]()
     ends["now"] = ["d" * 64, "b" * 64, "e" * 64]
-    running = iter([True, True, False])
+    running, ticks = iter([True, True, False]), np.array([2, 4, 6])
+    worlds = SimpleNamespace(tick=wide([1, 2, 3]))
     engine = SimpleNamespace(
         limits=lambda _, ticks: ticks, any_running=lambda _: next(running),
         advance=lambda limits: limits, arrays=lambda: "now",
+        state=SimpleNamespace(world=SimpleNamespace(worlds=worlds)),
     )  # fmt: skip
     recorder = SimpleNamespace(append=heard.append, digests=dict)
     for name, value in (
         ("Engine", lambda _: engine), ("recorder_for", lambda *_: recorder),
-        ("world_ticks", lambda _: "ticks"), ("digests", lambda _, which, __: ends[which]),
+        ("world_ticks", lambda _: ticks), ("digests", lambda _, which, __: ends[which]),
     ):  # fmt: skip
         monkeypatch.setattr(verification, name, value)
     monkeypatch.setattr(checkpoint, "origin", lambda *_: None)
@@ -176,9 +180,13 @@ def test_verify_names_each_world_that_differs_with_its_own_seed(
         fault_in=None, admit=lambda: None, other_versions=versions,
     )  # fmt: skip
     reasons = "".join(f"; {each}" for each in versions)
-    assert verify(run, heard.append) == [
+    told = list[tuple[str, float]]()
+    with progress.shown(lambda *each: told.append(each)):
+        found = verify(run, heard.append)
+    assert told == [("living again", 0.5)] * 2, "half of all ticks, in both chunks"
+    assert found == [
         f"world 0 (seed 40) differs: {'a' * 16}... recorded, {'d' * 16}... now{reasons}",
         f"world 2 (seed 42) differs: {'c' * 16}... recorded, {'e' * 16}... now{reasons}",
     ]
-    assert heard[::2] == ["ticks", "ticks"]
+    assert all(each is ticks for each in heard[::2])
     assert [status.engine for status in heard[1::2]] == [engine, engine]
