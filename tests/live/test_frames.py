@@ -109,23 +109,6 @@ def test_lines_are_followed_in_as_many_worlds_as_the_screen_has_rows(
     assert asked == [2, 30, 30, 30]
 
 
-def test_births_and_deaths_of_every_chunk_and_world_are_kept(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    frames, made, kept = Frames(0.0, monkeypatch), list[Any](), list[Any]()
-
-    def ground(cells: int, worlds: int) -> Any:
-        made.append((cells, worlds))
-        return SimpleNamespace(follow=kept.append)
-
-    monkeypatch.setattr(views, "Ground", ground)
-    chunks = [status(3), status(3)]
-    for chunk in chunks:
-        frames.view(chunk)
-    assert made == [(4, 3)]
-    assert kept == [chunk.engine.events for chunk in chunks]
-
-
 def test_before_the_first_chunk_the_view_says_that_it_compiles() -> None:
     """A view that ends before the first chunk removes these words."""
     shown = view()

@@ -8,7 +8,6 @@ from rich.segment import Segment
 
 from primordia.law.world import Cause
 from primordia.live.census import Census
-from primordia.live.ground import Medians
 from primordia.live.panel import (
     Outlook,
     duration,
@@ -64,9 +63,7 @@ COUNTS: dict[str, Any] = {
 
 
 def test_each_number_is_that_of_all_worlds_that_are_shown() -> None:
-    found = numbers(
-        counted(2, **COUNTS), 16, Outlook(4500.0, 125.0), 6, Medians(0.25, 0.125, 1.375)
-    )
+    found = numbers(counted(2, **COUNTS), 16, Outlook(4500.0, 125.0), 6)
     assert list(found.items()) == [
         ("tick", "3,400"),
         ("alive", "25 of 32"),
@@ -78,19 +75,16 @@ def test_each_number_is_that_of_all_worlds_that_are_shown() -> None:
         ("time left", "2 min 5 s"),
         ("takeovers", "6"),
         ("extinctions", "3"),
-        ("children mutate", "25%"),
-        ("mutants as good", "12%"),
-        ("good lines hold", "1.38"),
     ]
 
 
 def test_unknown_numbers_are_left_out_and_zeros_are_not() -> None:
-    found = numbers(counted(1), 8, Outlook(None, None), None, None)
+    found = numbers(counted(1), 8, Outlook(None, None), None)
     assert found == {
         "tick": "0", "alive": "0 of 8", "mean age": "0", "births": "0", "deaths": "0", "oldest": "0",
         "organism-ticks/s": "-", "extinctions": "0",
     }  # fmt: skip
-    assert numbers(counted(1), 8, Outlook(0.0, 0.0), 0, None) == {
+    assert numbers(counted(1), 8, Outlook(0.0, 0.0), 0) == {
         **found, "organism-ticks/s": "0", "takeovers": "0",
     }  # fmt: skip
 
@@ -100,7 +94,7 @@ def test_unknown_numbers_are_left_out_and_zeros_are_not() -> None:
     [(499_999, "25 of 999,998"), (500_000, "25 of 1.0 M"), (10**7, "25 of 20.0 M")],
 )
 def test_from_a_million_cells_on_numbers_are_short(cells: int, shown: str) -> None:
-    assert numbers(counted(2, **COUNTS), cells, Outlook(None, None), None, None)["alive"] == shown
+    assert numbers(counted(2, **COUNTS), cells, Outlook(None, None), None)["alive"] == shown
 
 
 def test_at_most_five_numbers_stand_side_by_side_in_columns() -> None:

@@ -10,7 +10,6 @@ from rich.style import Style
 from primordia.config import Config
 from primordia.law.world import Cause
 from primordia.live.census import Census
-from primordia.live.ground import Medians
 from primordia.live.paint import FAINT, Row, width_of
 
 STRONG = Style(bold=True)
@@ -45,13 +44,7 @@ def heading(config: Config, pace: str, seconds: float, width: int) -> Row:
     return [Segment(task, STRONG), Segment(about, FAINT), Segment(" " * gap + clock, FAINT)]
 
 
-def numbers(
-    census: Census,
-    cells: int,
-    outlook: Outlook,
-    takeovers: int | None,
-    ground: Medians | None,
-) -> dict[str, str]:
+def numbers(census: Census, cells: int, outlook: Outlook, takeovers: int | None) -> dict[str, str]:
     """Return counts by name, the most important first; unknown counts are left out.
 
     Args:
@@ -59,7 +52,6 @@ def numbers(
         cells: number of cells of one world.
         outlook: speed and remaining time.
         takeovers: number of takeovers in all worlds; None if lines of descent are not followed.
-        ground: whether good lines persist; None if unknown.
     """
     worlds = len(census.tick)
     values = {
@@ -73,9 +65,6 @@ def numbers(
         "time left": duration(outlook.seconds_left) if outlook.seconds_left else "",
         "takeovers": "" if takeovers is None else f"{takeovers:,}",
         "extinctions": f"{census.extinctions.sum():,}",
-        "children mutate": f"{ground.mutated:.0%}" if ground else "",
-        "mutants as good": f"{ground.as_good:.0%}" if ground else "",
-        "good lines hold": f"{ground.held:.2f}" if ground else "",
     }
     return {name: value for name, value in values.items() if value}
 

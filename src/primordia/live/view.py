@@ -5,7 +5,6 @@ import time
 from signal import SIGINT, raise_signal
 from types import TracebackType
 
-import numpy as np
 from rich.console import Console, ConsoleOptions, RenderResult
 from rich.live import Live
 from rich.segment import Segment
@@ -14,7 +13,6 @@ from primordia.live.census import Census, Speed
 from primordia.live.companion import Companion
 from primordia.live.descent import Descent
 from primordia.live.forms import Room
-from primordia.live.ground import Ground, medians
 from primordia.live.pace import Pace
 from primordia.live.paint import FAINT, Row
 from primordia.live.panel import Outlook, heading, keys, numbers, panel, saturation
@@ -47,7 +45,6 @@ class View:
         self._letters = console.no_color or console.color_system in (None, "standard")
         self._live = Live(console=console, auto_refresh=False, redirect_stderr=sys.stderr.isatty())
         self._speed, self._stage, self._descent = Speed(), Stage(), Descent()
-        self._ground = Ground(0, 0)
         self._size, self._due, self._cost, self._stale = console.size, 0.0, 0.0, False
         self._moment = 0.0
         self._status: Status | None = None
@@ -79,9 +76,6 @@ class View:
         """Follow a chunk, draw if a frame is due, and wait as the pace demands."""
         law = status.engine.law
         self._descent.follow(status, min(law.worlds, self._console.size.height))
-        if self._status is None:
-            self._ground = Ground(law.cells, law.worlds)
-        self._ground.follow(status.engine.events)
         self._status, self._stale = status, True
         now = time.perf_counter()
         alone = law.worlds == 1 or self._alone is not None
@@ -194,11 +188,7 @@ class View:
         left = self._speed.seconds_left(status.limits) if status.limits else None
         outlook = Outlook(self._speed.organism_ticks_per_s(), left)
         shown = range(law.worlds) if alone is None else [alone]
-        takeovers = self._descent.takeovers(shown)
-        ticks = to_host(status.engine.state.world.worlds.tick).astype(np.int64)
-        measured = self._ground.measured(ticks)
-        ground = medians([each for each in measured if each.world in shown])
-        return numbers(census, law.cells, outlook, takeovers, ground)
+        return numbers(census, law.cells, outlook, self._descent.takeovers(shown))
 
 
 def _no_keys(seconds: float) -> str:
