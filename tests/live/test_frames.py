@@ -119,17 +119,18 @@ def test_before_the_first_chunk_the_view_says_that_it_compiles() -> None:
 
 
 @pytest.mark.parametrize(
-    ("terminal", "dumb", "keys", "drawn"),
-    [(False, False, False, False), (True, True, True, False), (True, False, True, True),
-     (True, False, False, True)],
+    ("terminal", "dumb", "grey", "keys", "drawn"),
+    [(False, False, False, False, False), (True, True, False, True, False),
+     (True, False, True, True, False), (True, False, False, True, True),
+     (True, False, False, False, True)],
 )  # fmt: skip
-def test_a_view_is_drawn_in_a_terminal_that_can_move_its_cursor(
-    terminal: bool, dumb: bool, keys: bool, drawn: bool, monkeypatch: pytest.MonkeyPatch
+def test_a_view_is_drawn_in_a_terminal_with_colours_that_can_move_its_cursor(
+    terminal: bool, dumb: bool, grey: bool, keys: bool, drawn: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Otherwise, plain lines are printed. The view has keys if standard input is a terminal too."""
     made, keyboard = MagicMock(), MagicMock(there=keys)
     keyboard.return_value.__enter__.return_value = keyboard
-    console = SimpleNamespace(is_dumb_terminal=dumb)
+    console = SimpleNamespace(is_dumb_terminal=dumb, no_color=grey)
     monkeypatch.setattr(watching, "Console", lambda **_: console)
     monkeypatch.setattr(watching, "Keyboard", keyboard)
     monkeypatch.setattr(watching, "View", made)

@@ -23,7 +23,7 @@ class Parts:
     def screen(self, width: int, height: int, organism: bool = False) -> list[str]:
         """Return the rows of a screen."""
         draw = self._organism if organism else None
-        room = Room(width, height, letters=False)
+        room = Room(width, height)
         return text(composed(self._measure, self._scene, self._numbers, draw, room))
 
     def _measure(self, room: Room) -> int:

@@ -42,7 +42,6 @@ class View:
         self, console: Console, pace: Pace | None = None, keyboard: Keyboard | None = None
     ) -> None:
         self._console, self._pace, self._keyboard = console, pace or Pace(), keyboard
-        self._letters = console.no_color or console.color_system in (None, "standard")
         self._live = Live(console=console, auto_refresh=False, redirect_stderr=sys.stderr.isatty())
         self._speed, self._stage, self._descent = Speed(), Stage(), Descent()
         self._size, self._due, self._cost, self._stale = console.size, 0.0, 0.0, False
@@ -135,7 +134,7 @@ class View:
 
     def _rows(self, status: Status) -> list[Row]:
         width, height = self._size.width, self._size.height - 1
-        room = Room(width, max(height - (2 if self._keyboard else 1), 1), self._letters)
+        room = Room(width, max(height - (2 if self._keyboard else 1), 1))
         rows = [heading(status.engine.config, str(self._pace), status.wall_s, width)]
         rows += self._words(room) or self._world(status, room)
         if self._keyboard:

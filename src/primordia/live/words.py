@@ -29,7 +29,7 @@ WORDS = {
     "mean age": "Mean age of the living, in ticks.",
     "oldest": "Age of the oldest of the living, in ticks.",
     "line of descent": "Organisms that descend from one organism at an earlier moment. A line has"
-    " one colour or letter.",
+    " one colour.",
     "branch": "Organisms that descend from one child of a founder.",
     "takeovers": "How often only one line was left, so that all the living descend from one ancestor.",
     "extinctions": "How often no organism was alive. Life then begins again with new founders.",
