@@ -10,7 +10,7 @@ from primordia.history.lines import Lines
 from primordia.law.world import World
 from primordia.live.forms import Ring, Room, Torus
 from primordia.live.paint import Cells, mosaic
-from primordia.live.scene import Grid, Stage, _labelled, cell_width, cells_of
+from primordia.live.scene import Grid, Stage, _labelled, cells_of
 from tests.live.drawn import colours, text
 from tests.live.posed import law, posed
 
@@ -200,18 +200,6 @@ def test_cells_show_lines_of_descent_where_these_are_followed_and_branches_elsew
     assert Stage().scene(law(4, 3), world, followed, None, room).legend.endswith("line of descent")
     for alone, note in ((1, "line of descent"), (2, "branch of the founder")):
         assert Stage().scene(law(4, 3), world, followed, alone, room).legend.endswith(note)
-
-
-def test_the_width_of_a_cell_is_that_of_the_worlds_that_are_shown() -> None:
-    room, seeds = Room(64, 3), list(range(6))
-    assert cell_width(law(10), seeds, None, room) == 6
-    assert cell_width(law(10, 3), seeds, None, room) == 6, "60 columns for each of three rows"
-    assert cell_width(law(10, 3), seeds, 1, room) == 6
-    assert cell_width(law(10, 6), seeds, None, room) == 2, "two side by side have 28 columns"
-    assert [cell_width(law(10, 6), seeds, alone, room) for alone in (0, 5)] == [6, 6]
-    assert cell_width(law(40, 6), seeds, None, room) == 0, "not all worlds fit"
-    assert cell_width(law(10, 6), [999, *range(1000, 1005)], None, room) == 2
-    assert cell_width(law(10, 6), [10**11, *seeds[1:]], None, room) == 1, "labels have 15 columns"
 
 
 # The past.

@@ -69,15 +69,6 @@ class Grid(NamedTuple):
         return cls(across, shown, each, gap)
 
 
-def cell_width(law: Law, seeds: list[int], alone: int | None, room: Room) -> int:
-    """Return the width of a cell in a room, in columns; 0 if not all cells of the shown worlds fit."""
-    form = form_of(law)
-    if law.worlds == 1 or alone is not None:
-        return form.scale(room)
-    grid = Grid.of(form, law.worlds, _digits(seeds) + BESIDE, room)
-    return form.scale(grid.each) if grid.shown == law.worlds else 0
-
-
 class Stage:
     """The drawings of a run's worlds. It remembers the past of rings."""
 
@@ -128,11 +119,6 @@ class Stage:
         return list(past)[1:]
 
 
-def _digits(seeds: list[int]) -> int:
-    """Return the number of digits of the longest seed."""
-    return max(len(str(seed)) for seed in seeds)
-
-
 def _tiles(
     world: World,
     form: Form,
@@ -143,7 +129,7 @@ def _tiles(
     """Draw worlds side by side and below each other, each with its seed and a mark if saturated."""
     seeds = to_host(world.worlds.seed).tolist()
     saturated = to_host(world.worlds.saturated).astype(np.int64) >= 0
-    digits = _digits(seeds)
+    digits = max(len(str(seed)) for seed in seeds)
     grid = Grid.of(form, len(seeds), digits + BESIDE, room)
     tiles, parts = [], dict[str, None]()
     for number in range(grid.shown):

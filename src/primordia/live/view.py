@@ -16,12 +16,11 @@ from primordia.live.forms import Room
 from primordia.live.pace import Pace
 from primordia.live.paint import FAINT, Row
 from primordia.live.panel import Outlook, heading, keys, numbers, panel, saturation
-from primordia.live.scene import Scene, Stage, cell_width
+from primordia.live.scene import Scene, Stage
 from primordia.live.screen import composed
 from primordia.live.terminal import Keyboard
 from primordia.live.words import pages
 from primordia.printable import printable
-from primordia.random.wide import to_host
 from primordia.runs.loop import Status
 
 
@@ -176,10 +175,8 @@ class View:
         def organism(room: Room) -> list[Row]:
             return self._companion.rows(engine, alone, room) if self._companion else []
 
-        def measure(room: Room) -> int:
-            return cell_width(law, to_host(world.worlds.seed).tolist(), alone, room)
-
-        return composed(measure, draw, counts, organism if self._companion else None, room)
+        beside = law.placement.shape(law.cells)[0] > 1  # a torus is high, and a ring is wide
+        return composed(beside, draw, counts, organism if self._companion else None, room)
 
     def _numbers(self, status: Status, census: Census) -> dict[str, str]:
         """Return the counts of the worlds that are shown."""
