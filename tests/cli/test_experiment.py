@@ -10,7 +10,7 @@ from unittest.mock import MagicMock, call, create_autospec, patch
 import pytest
 
 from primordia import interrupts
-from primordia.cli import campaign_view
+from primordia.experiments import view
 from primordia.experiments.campaign import Campaign
 from primordia.experiments.dispatch import Result
 from primordia.experiments.ending import Ending
@@ -50,7 +50,7 @@ def test_the_options_reach_the_jobs(chosen: MagicMock) -> None:
     assert chosen.place_for.call_args == call(OUT, 1205, None, None, **plain)
     chosen.live_all.reset_mock()
     ways = ("--jobs", 3, "--ray", "there", "--checkpoint-every", 7, "--device", "gpu")
-    with patch.object(campaign_view, "watching") as watching:
+    with patch.object(view, "watching") as watching:
         done = here("experiment", FILE, "--out", OUT, "--only", "a", "--only", "b", *ways)
     assert done.returncode == 0
     assert chosen.begin.call_args == call(FILE, OUT)

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 import tomli_w
 
-from primordia.cli.campaign_view import Clock, line
 from primordia.errors import InputError
 from primordia.experiments.ledger import Entry, Ledger, WorldCounts
 from primordia.experiments.plan import ArmPlan, Job, Plan, recorded
 from primordia.experiments.status import ArmStatus, CampaignStatus, _interval, status
+from primordia.experiments.view import Clock, line
 
 
 @pytest.mark.parametrize("worlds", [5, 6, 9, 20, 100])
@@ -147,7 +147,7 @@ def test_time_left_follows_from_the_jobs_done_since_the_command_began(
     """Jobs that were done before the command, and jobs that failed, do not change the time left."""
     now: Any = SimpleNamespace(perf_counter=lambda: now.seconds, strftime=lambda _: "12:00:00")
     now.seconds = 1000.0
-    monkeypatch.setattr("primordia.cli.campaign_view.time", now)
+    monkeypatch.setattr("primordia.experiments.view.time", now)
     clock = Clock()
 
     def status(done: int) -> CampaignStatus:

@@ -98,7 +98,7 @@ def show_status(status: "CampaignStatus") -> None:
     """Print the status of an experiment."""
     from rich.console import Console
 
-    from primordia.cli.campaign_view import table
+    from primordia.experiments.view import table
 
     Console(highlight=False).print(table(status))
 
@@ -128,9 +128,9 @@ def _live_all(
     quiet: bool,
     **options: Any,
 ) -> None:
-    from primordia.cli.campaign_view import watching
     from primordia.experiments.dispatch import live_all
     from primordia.experiments.places import place_for
+    from primordia.experiments.view import watching
 
     left = chosen.left(only)
     if left:

@@ -7,10 +7,10 @@ from typing import Any
 import pytest
 from rich.console import Console
 
-from primordia.cli import campaign_view
-from primordia.cli.campaign_view import SHOWN, Clock, line, table
+from primordia.experiments import view
 from primordia.experiments.ledger import Entry, WorldCounts
 from primordia.experiments.status import ArmStatus, CampaignStatus
+from primordia.experiments.view import SHOWN, Clock, line, table
 
 ARMS = (
     ArmStatus("mild", 1200, 1100, 1000, 54321.4, (1234.6, 98765.4)),
@@ -52,7 +52,7 @@ def at(monkeypatch: pytest.MonkeyPatch, seconds: float) -> Any:
     """Return a clock that shows these seconds and can be set."""
     now: Any = SimpleNamespace(perf_counter=lambda: now.seconds, strftime=lambda _: "12:00:00")
     now.seconds = seconds
-    monkeypatch.setattr(campaign_view, "time", now)
+    monkeypatch.setattr(view, "time", now)
     return now
 
 
@@ -146,7 +146,7 @@ def test_a_slow_reading_is_repeated_rarely(monkeypatch: pytest.MonkeyPatch) -> N
         now.seconds += now.took
 
     for now.took, interval in ((0.1, 5.0), (0.001, 0.5)):
-        paced = campaign_view._Paced(0.5, call)
+        paced = view._Paced(0.5, call)
         made.clear()
         for _ in range(3):
             paced()
@@ -181,7 +181,7 @@ def test_without_a_terminal_a_line_is_printed_each_minute(
         moments_read.append(now.seconds - 100)
         return CampaignStatus("?", JOBS, (), (), ())
 
-    with campaign_view.watching(quiet, read) as look:
+    with view.watching(quiet, read) as look:
         for seconds in (0.0, 0.5, 59.5, 60.5, 61.0, 120.0, 121.0):
             now.seconds = 100.0 + seconds
             look()
@@ -210,7 +210,7 @@ def test_a_terminal_shows_a_table_that_ends_with_the_last_state(
     states = iter(
         CampaignStatus("?", {**JOBS, "done": done}, ARMS, (), ()) for done in (1295, 1302)
     )
-    with campaign_view.watching(False, lambda: next(states)) as look:
+    with view.watching(False, lambda: next(states)) as look:
         look()
     words = terminal.getvalue()
     assert words.count("12:00:00") == lines
