@@ -14,7 +14,7 @@ import primordia
 from primordia.errors import InputError
 from primordia.history.pedigree import genomes
 from primordia.history.rebuilding import descent, rebuild_all
-from primordia.runs import checkpoint, loop, record
+from primordia.runs import checkpoint, loop, recorder
 from primordia.runs.archive import Archive
 from tests.worlds import MEADOW, MILL, config, merged
 
@@ -125,7 +125,7 @@ def test_genomes_are_rebuilt_while_a_run_continues(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Some rows are in segments, other rows in open tails."""
-    monkeypatch.setattr(record, "SEGMENT_ROWS", 100)
+    monkeypatch.setattr(recorder, "SEGMENT_ROWS", 100)
     values, _ = WORLDS["blocks that mutate apart"]
     run = tmp_path / "run"
 

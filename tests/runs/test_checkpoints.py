@@ -9,7 +9,7 @@ import pytest
 from primordia.errors import Trouble
 from primordia.runs import checkpoint, manifest
 from primordia.runs.manifest import Manifest, Progress, Seal, Segment
-from primordia.runs.record import Recorder
+from primordia.runs.recorder import Recorder
 from primordia.runs.schema import TABLES, Schema
 from primordia.settings.limits import Stop
 

@@ -24,7 +24,7 @@ from primordia.runs.arrays import Arrays, FaultOf
 from primordia.runs.code import FOLDER as CODE
 from primordia.runs.kept import FOLDER as FILES
 from primordia.runs.manifest import INPUTS, Manifest, Progress, Seal
-from primordia.runs.record import Recorder
+from primordia.runs.recorder import Recorder
 from primordia.runs.schema import TABLES
 
 KEPT = 2

@@ -1,7 +1,7 @@
 """The loop of a run: begin or resume, then advance, record and checkpoint.
 
-A run is a directory, whose records follow from the files that it began with; see `record` and
-`checkpoint`.
+A run is a directory, whose records follow from the files that it began with; see `recorder`
+and `checkpoint`.
 """
 
 import time
@@ -24,7 +24,7 @@ from primordia.runs import checkpoint, directory, faults
 from primordia.runs.archive import Archive
 from primordia.runs.checkpoint import Checkpoint
 from primordia.runs.manifest import Progress
-from primordia.runs.record import Recorder
+from primordia.runs.recorder import Recorder
 from primordia.runs.schema import Schema
 from primordia.settings import limits as stop
 
