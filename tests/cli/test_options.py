@@ -27,7 +27,7 @@ def run() -> Iterator[MagicMock]:
         getattr(noted, name).return_value = MagicMock()
     noted.ancestors.return_value.to_dict.return_value = {}
     noted.organism.return_value.evaluate.return_value.to_dict.return_value = {}
-    for name in ("standings", "lines", "heredity", "threshold", "resume"):
+    for name in ("standings", "lineages", "heredity", "threshold", "resume"):
         getattr(noted, name).return_value = []
     noted.shadow.return_value.to_dict.return_value = {}
     with patch("primordia.api.load", return_value=noted) as noted.loaded:
@@ -72,10 +72,10 @@ CALLS: dict[tuple[Any, ...], Any] = {
     ("ancestors", RUN, 0, "--world", 0, "--json"): call.ancestors(0, 0, report),
     ("ancestors", RUN, "--world", 0, "--json"): call.ancestors(None, 0, report),
     ("ancestors", RUN, "--json"): call.ancestors(None, None, report),
-    ("lines", RUN, "--world", 2, "--at", 9, "--json"): call.lines(2, 9),
-    ("lines", RUN, "--world", 0, "--at", 0, "--json"): call.lines(0, 0),
-    ("lines", RUN, "--json"): call.lines(0, None),
-    ("lines", RUN, "--world", "all", "--json"): call.lines(None, None),
+    ("lineages", RUN, "--world", 2, "--at", 9, "--json"): call.lineages(2, 9),
+    ("lineages", RUN, "--world", 0, "--at", 0, "--json"): call.lineages(0, 0),
+    ("lineages", RUN, "--json"): call.lineages(0, None),
+    ("lineages", RUN, "--world", "all", "--json"): call.lineages(None, None),
     ("resume", RUN, "--inexact", *LIMITS, *WAYS): call.resume(inexact=True, **ENDS, **WORLDS),
     ("resume", RUN, "--quiet"):
         call.resume(inexact=False, checkpoint_every=60.0, listen=None),

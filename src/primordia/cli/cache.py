@@ -6,7 +6,6 @@ import platform
 import warnings
 from pathlib import Path
 
-import click
 from platformdirs import user_cache_path
 
 CPUINFO = Path("/proc/cpuinfo")
@@ -44,18 +43,3 @@ def processor(cpuinfo: Path = CPUINFO) -> str:
         about = [platform.processor()]
     text = "\n".join([platform.machine(), *about])
     return f"{platform.machine()}-{hashlib.sha256(text.encode()).hexdigest()[:16]}"
-
-
-def _compile_again(_: click.Context, __: click.Parameter, given: bool) -> None:
-    if given:
-        os.environ["JAX_ENABLE_COMPILATION_CACHE"] = "false"
-
-
-cache_option = click.option(
-    "--no-cache",
-    is_flag=True,
-    expose_value=False,
-    is_eager=True,  # before an option whose check imports JAX, which reads the variable at once
-    callback=_compile_again,
-    help="Neither read nor write the cache of compiled code.",
-)

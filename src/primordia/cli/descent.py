@@ -12,7 +12,6 @@ import click
 
 from primordia import files
 from primordia.cli.assays.options import json_option, out_option
-from primordia.cli.cache import cache_option
 from primordia.cli.flags import run_argument, trust_option
 from primordia.cli.streams import report
 from primordia.cli.table import show_table
@@ -37,7 +36,6 @@ ROWS, LINES = 20, 10
 )
 @out_option
 @trust_option
-@cache_option
 @json_option
 def ancestors(
     run: Path, organism: int | None, world: int | None, out: Path | None, trust: bool, as_json: bool
@@ -67,7 +65,6 @@ def ancestors(
     "--at", type=int, metavar="TICK", help="Tick at which the lines are founded [see above]."
 )
 @out_option
-@cache_option
 @json_option
 def lineages(run: Path, world: str, at: int | None, out: Path | None, as_json: bool) -> None:
     """Measure how lines of descent replace each other, and compare them with neutral shadows.
@@ -227,7 +224,3 @@ def _number(value: float | None, form: str) -> str:
 
 def _count(value: int | None) -> str:
     return "-" if value is None else f"{value:,}"
-
-
-COMMANDS = (ancestors, lineages)
-"""The commands of this module."""

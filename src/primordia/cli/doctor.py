@@ -43,6 +43,3 @@ def doctor(as_json: bool) -> None:
         click.echo(json.dumps({"facts": facts, "extras": extras, "trials": rows, "holds": passed}))
     if not passed:
         raise click.exceptions.Exit(1)
-
-
-COMMANDS = (doctor,)

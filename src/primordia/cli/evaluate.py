@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from primordia.cli.cache import cache_option
 from primordia.cli.flags import HabitatCommand, recorded_device_option, run_argument, trust_option
 from primordia.cli.numbers import COUNT, TICKS
 from primordia.cli.table import show_table, spread
@@ -59,7 +58,6 @@ SENSES = {
 )
 @recorded_device_option
 @trust_option
-@cache_option
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 @click.pass_obj
 def evaluate(
@@ -184,6 +182,3 @@ def _quartiles(spread: dict[str, float]) -> str:
 
 def _cut(count: int, state: str) -> str:
     return f"; {count:,} still {state} when cut" if count else ""
-
-
-COMMANDS = (evaluate,)

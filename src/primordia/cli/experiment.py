@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from primordia import cores
-from primordia.cli.cache import cache_option
 from primordia.cli.flags import checkpoint_option, device_option, quiet_option, trust_option
 from primordia.cli.paths import OutputPath, PathType
 from primordia.cli.streams import report
@@ -46,7 +45,6 @@ if TYPE_CHECKING:
 @checkpoint_option
 @device_option
 @trust_option
-@cache_option
 @quiet_option
 def experiment(
     file: Path,
@@ -168,6 +166,3 @@ def _end_unless_done(chosen: "Campaign", result: "Result") -> None:
 
 def _jobs(count: int) -> str:
     return "1 job" if count == 1 else f"{count:,} jobs"
-
-
-COMMANDS = (experiment,)

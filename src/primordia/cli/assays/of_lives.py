@@ -14,7 +14,6 @@ from primordia.cli.assays.options import (
     tell,
     ticks_option,
 )
-from primordia.cli.cache import cache_option
 from primordia.cli.flags import HabitatCommand, trust_option
 from primordia.cli.numbers import COUNT, Finite
 from primordia.cli.paths import PathType
@@ -47,7 +46,6 @@ def assay_of_lives(short_help: str) -> Callable:
         ticks_option,
         out_option,
         trust_option,
-        cache_option,
         json_option,
         click.pass_obj,
     )

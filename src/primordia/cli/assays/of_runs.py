@@ -16,7 +16,6 @@ from primordia.cli.assays.options import (
     tell,
     ticks_option,
 )
-from primordia.cli.cache import cache_option
 from primordia.cli.flags import HabitatCommand, trust_option
 from primordia.cli.numbers import COUNT
 
@@ -34,7 +33,6 @@ from primordia.cli.numbers import COUNT
 @ticks_option
 @out_option
 @trust_option
-@cache_option
 @json_option
 @click.pass_obj
 def garden(
