@@ -13,7 +13,7 @@ from primordia import interrupts
 from primordia.experiments import view
 from primordia.experiments.campaign import Campaign
 from primordia.experiments.dispatch import Result
-from primordia.experiments.ending import Ending
+from primordia.experiments.plan import Ending
 from tests.commands import complains, here
 
 FILE, OUT = Path("a.toml"), Path("OUT")
@@ -36,7 +36,7 @@ def chosen() -> Iterator[MagicMock]:
     with (
         patch("primordia.experiments.campaign.begin", return_value=made) as made.begin,
         patch("primordia.experiments.campaign.planned", return_value=made) as made.planned,
-        patch("primordia.experiments.places.place_for") as made.place_for,
+        patch("primordia.experiments.dispatch.place_for") as made.place_for,
         patch("primordia.experiments.dispatch.live_all", return_value=Result()) as made.live_all,
         patch("primordia.experiments.job.ending_of") as made.ending_of,
     ):

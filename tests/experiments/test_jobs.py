@@ -21,8 +21,7 @@ from primordia.experiments import here as on_cores
 from primordia.experiments import job as jobs
 from primordia.experiments.campaign import Campaign, begin
 from primordia.experiments.dispatch import live_all
-from primordia.experiments.ending import Ending
-from primordia.experiments.plan import Job
+from primordia.experiments.plan import Ending, Job
 from primordia.runs import directory, loop
 from tests import commands, toys
 from tests.commands import complains, here

@@ -20,8 +20,7 @@ from primordia.comparison import comparison
 from primordia.errors import InputError, Trouble
 from primordia.experiments import campaign as campaigns
 from primordia.experiments.campaign import is_experiment
-from primordia.experiments.dispatch import live_all
-from primordia.experiments.places import place_for
+from primordia.experiments.dispatch import live_all, place_for
 from primordia.experiments.status import CampaignStatus
 from primordia.runs import code, loop, opening
 from primordia.runs.archive import Archive

@@ -16,8 +16,7 @@ from primordia.errors import InputError
 if TYPE_CHECKING:
     from primordia.experiments.campaign import Campaign
     from primordia.experiments.dispatch import Result
-    from primordia.experiments.ending import Ending
-    from primordia.experiments.plan import Job
+    from primordia.experiments.plan import Ending, Job
     from primordia.experiments.status import CampaignStatus
 
 
@@ -126,8 +125,7 @@ def _live_all(
     quiet: bool,
     **options: Any,
 ) -> None:
-    from primordia.experiments.dispatch import live_all
-    from primordia.experiments.places import place_for
+    from primordia.experiments.dispatch import live_all, place_for
     from primordia.experiments.view import watching
 
     left = chosen.left(only)

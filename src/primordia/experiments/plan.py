@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import chain, zip_longest
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal, NamedTuple
 
 import tomli_w
 from pydantic import Field, ValidationError
@@ -72,6 +72,18 @@ class Job:
     """the run's directory, relative to the experiment's directory"""
     source: str | None = None
     """the run that the job forks, relative to the directory of the experiment"""
+
+
+class Ending(NamedTuple):
+    """The outcome of a job."""
+
+    job: int
+    state: Literal["done", "failed", "elsewhere", "stopped"]
+    """elsewhere: another process runs the job; stopped: a signal came, and the job can go on"""
+    error: str | None = None
+    """the error in one line, if the job failed"""
+    again: bool = True
+    """whether another try may end otherwise; a request that cannot be carried out never does"""
 
 
 class Plan(Settings):

@@ -17,8 +17,8 @@ from primordia.brains import genomes
 from primordia.config import Config, parsed
 from primordia.errors import InputError, InUseError, Trouble
 from primordia.habitats.contract import AnyHabitat
-from primordia.runs import checkpoint, code, kept, stored
-from primordia.runs.description import Description
+from primordia.runs import checkpoint, code, kept
+from primordia.runs.description import Description, from_json
 from primordia.runs.manifest import INPUTS
 from primordia.runs.schema import TABLES
 from primordia.settings.tables import flat, from_toml
@@ -211,7 +211,7 @@ def recorded_versions(run: Path) -> Versions:
         InputError: this is not a run directory.
     """
     otherwise = f"{run} is not a run of primordia: it has no readable {VERSIONS}"
-    return stored.read(run / VERSIONS, Versions, otherwise)
+    return from_json(run / VERSIONS, Versions, otherwise)
 
 
 @contextmanager
