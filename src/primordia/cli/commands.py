@@ -24,9 +24,8 @@ from primordia.cli import (
     track,
 )
 from primordia.cli.assays import group as assays
-from primordia.cli.cache import keep_compiled_code
+from primordia.cli.cache import check_variables, keep_compiled_code
 from primordia.cli.streams import flush, report
-from primordia.cli.variables import check_variables
 from primordia.errors import InputError, Trouble
 
 GROUPS: dict[str, tuple[click.Command, ...]] = {
