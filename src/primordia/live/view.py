@@ -138,7 +138,7 @@ class View:
         rows += self._words(room) or self._world(status, room)
         if self._keyboard:
             rows += [[]] * (height - 1 - len(rows))
-            rows = [*rows[: height - 1], self._keys(status, width)]
+            rows = [*rows[: height - 1], self._keys(status)]
         return rows[:height]
 
     def _words(self, room: Room) -> list[Row]:
@@ -151,10 +151,10 @@ class View:
             return []
         return found[self._page]
 
-    def _keys(self, status: Status, width: int) -> Row:
+    def _keys(self, status: Status) -> Row:
         """Return the keys that mean something now."""
         many = "w" if status.engine.law.worlds > 1 else ""
-        return keys(f"s-{many}{'on' if self._companion else 'o'}?q", width)
+        return keys(f"s-{many}{'on' if self._companion else 'o'}?q")
 
     def _world(self, status: Status, room: Room) -> list[Row]:
         engine, alone = status.engine, self._alone
