@@ -1,7 +1,6 @@
 """Commands on lines of descent: ancestors, lines."""
 
 import json
-from collections.abc import Callable
 from functools import partial
 from math import isnan
 from pathlib import Path
@@ -10,16 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from primordia import files
-from primordia.cli.assays.options import json_option, out_option
+from primordia.cli.assays.options import json_option, out_option, save_figure
 from primordia.cli.flags import run_argument, trust_option
 from primordia.cli.streams import report
 from primordia.cli.table import show_table
 from primordia.errors import InputError
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from primordia.phylogeny.descent import Ancestors
     from primordia.phylogeny.lines import WorldLines
     from primordia.phylogeny.sweeps import Sweep
@@ -55,7 +51,7 @@ def ancestors(
     if out is not None:
         from primordia.figures import descent
 
-        _draw(partial(descent.draw, found), out, "ancestors", as_json)
+        save_figure(partial(descent.draw, found), out, "ancestors", as_json)
 
 
 @click.command(short_help="Measure lines of descent: selection and drift, sweeps, diversity.")
@@ -86,7 +82,7 @@ def lineages(run: Path, world: str, at: int | None, out: Path | None, as_json: b
         from primordia.figures import lines as figure
 
         for each in found:
-            _draw(partial(figure.draw, each), out, f"lines-{each.world}", as_json)
+            save_figure(partial(figure.draw, each), out, f"lines-{each.world}", as_json)
 
 
 def _world(text: str) -> int | None:
@@ -207,15 +203,6 @@ def _sweeps_text(sweeps: "list[Sweep]") -> str:
             f" half of the living since tick {last.half:,}"
         )
     return f"{text}."
-
-
-def _draw(draw: "Callable[[], Figure]", folder: Path, name: str, as_json: bool) -> None:
-    from primordia.figures import style
-
-    files.make_folder(folder)
-    with style.applied():
-        pictures = style.save(draw(), folder / name)
-    click.echo(f"Figure: {' and '.join(map(str, pictures))}", err=as_json)
 
 
 def _number(value: float | None, form: str) -> str:
