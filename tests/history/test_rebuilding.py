@@ -155,7 +155,7 @@ def test_a_copy_has_its_parents_genome_and_a_mutant_has_not(deep: Path) -> None:
 @pytest.mark.parametrize(("organism", "world"), [(-1, 0), (10**9, 0), (0, 1), (0, -1)])
 def test_an_organism_that_never_lived_is_an_error(deep: Path, organism: int, world: int) -> None:
     with pytest.raises(InputError, match=f"no organism {organism} was born in world {world}"):
-        primordia.Run(deep).rebuild(organism, world)
+        primordia.Run(deep).organism(organism, world).genome()
 
 
 @pytest.mark.slow

@@ -16,7 +16,6 @@ from primordia.comparison.controls import FOUNDERS, Standing, evolved, unevolved
 from primordia.comparison.shadow import ORGANISMS, Shadow, shadow
 from primordia.errors import InputError, Trouble
 from primordia.history.info import info
-from primordia.history.rebuilding import rebuild
 from primordia.history.summary import summary
 from primordia.history.threshold import Threshold, threshold
 from primordia.organism.evaluation import Evaluation, evaluate
@@ -195,10 +194,6 @@ class Run:
             return table(part)
         formats.save(part, Path(out), say)
         return None
-
-    def rebuild(self, organism: int, world: int = 0) -> np.ndarray:
-        """Return an organism's genome, float32 (P,), rebuilt from the birth records alone."""
-        return rebuild(self.opened(), organism, world)
 
     def plot(
         self, out: str | Path | None = None, world: int = 0, figures: Sequence[str] = ()
