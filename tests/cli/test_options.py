@@ -266,11 +266,6 @@ def test_a_run_may_have_the_name_of_a_task(
     of_run.assert_called_once_with(run.opened.return_value, [(5, 2)], {})
 
 
-@pytest.mark.parametrize("words", [("a.safetensors",), (RUN, "--task", "T")], ids=str)
-def test_only_a_run_has_lines_of_descent(words: tuple[Any, ...]) -> None:
-    complains(here("assay", "line", *words), 2, "the assay `line` needs a run")
-
-
 @pytest.mark.parametrize("source", ["Pong-survival", "gym:Pond-v0", "a.toml", "a.safetensors"])
 @pytest.mark.parametrize("world", [0, 2])
 def test_only_a_run_has_worlds(source: str, world: int) -> None:

@@ -34,14 +34,17 @@ task_option = click.option(
 )
 
 
-def assay_of_lives(short_help: str) -> Callable:
-    """Return a decorator for commands whose subjects live again; habitat settings are flags too."""
-    options = (
+def assay_of_lives(short_help: str, genomes: bool = True) -> Callable:
+    """Return a decorator for commands whose subjects live again; habitat settings are flags too.
+
+    `genomes` says whether the subjects may be genomes of a file, which live in the task of --task.
+    """
+    options: tuple[Any, ...] = (
         click.command(cls=HabitatCommand, short_help=short_help),
         source_argument,
         organisms_argument,
         world_option,
-        task_option,
+        *([task_option] if genomes else []),
         games_option,
         ticks_option,
         out_option,
