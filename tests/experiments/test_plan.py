@@ -93,7 +93,7 @@ def test_the_largest_number_of_jobs_is_allowed(
     monkeypatch.setattr(plans, "LARGEST", 4)
     begin(write(tmp_path), tmp_path / "out")
     monkeypatch.setattr(plans, "LARGEST", 3)
-    with pytest.raises(InputError, match="it has more than 3 jobs"):
+    with pytest.raises(InputError, match="4 jobs are more than 3"):
         plans.recorded(tmp_path / "out")
     with pytest.raises(InputError, match=r"4 jobs are more than 3; raise jobs\.worlds"):
         read(write(tmp_path), tmp_path / "new")

@@ -50,16 +50,18 @@ def test_each_arm_has_the_worlds_of_its_own_jobs() -> None:
 
 ARM = {"name": "a", "settings": {"seeds": 2}}
 DAMAGED: dict[str, list[dict[str, Any]]] = {
-    "two arms have one name": [ARM, ARM],
-    "two arms have one": [ARM, {**ARM, "name": "b"}, {**ARM, "name": "A"}],
-    "a name that no arm can have": [{**ARM, "name": "jobs"}],
-    "has a name that no arm can have": [ARM, {**ARM, "name": "Results.csv"}],
+    "'a' cannot name an arm, or names two": [ARM, ARM],
+    "'a' cannot name an arm": [ARM, {**ARM, "name": "b"}, {**ARM, "name": "A"}],
+    "'jobs' cannot name an arm": [{**ARM, "name": "jobs"}],
+    "'results.csv' cannot name an arm": [ARM, {**ARM, "name": "Results.csv"}],
     "seeds of arm a must be a whole number": [{**ARM, "settings": {}}],
     "from 1 to 65536": [{**ARM, "settings": {"seeds": 2**16 + 1}}],
     "must be a whole number from 1 to": [{**ARM, "settings": {"seeds": 0}}],
     "a whole number from 1": [{**ARM, "settings": {"seeds": "two"}}],
     "seeds of arm b must be a whole number": [ARM, {"name": "b", "settings": {"seeds": True}}],
-    "more than 100,000 jobs": [{"name": name, "settings": {"seeds": 2**16}} for name in ("a", "b")],
+    "jobs are more than 100,000": [
+        {"name": name, "settings": {"seeds": 2**16}} for name in ("a", "b")
+    ],
 }
 
 

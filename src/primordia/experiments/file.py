@@ -18,7 +18,6 @@ fork.
 """
 
 import os
-from collections import Counter
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -29,7 +28,7 @@ from primordia import config
 from primordia.config import Config
 from primordia.errors import InputError
 from primordia.experiments import plan as plans
-from primordia.experiments.plan import RESERVED, ArmPlan, Fork, Plan, Source
+from primordia.experiments.plan import ArmPlan, Fork, Plan, Source
 from primordia.runs import opening
 from primordia.runs.directory import read_config
 from primordia.settings.base import UNREACHED, Settings
@@ -96,18 +95,11 @@ def read(file: Path, out: Path, forks: tuple[Path, ...] = ()) -> Plan:
     elif "task" not in values:
         raise InputError(f"{file}: `task` is missing; set it to the name of a task, or a file")
     chosen = [_arm(values, arm, file, fork is not None) for arm in arms]
-    names = Counter(arm.name.casefold() for arm in chosen)  # some file systems ignore case
-    if twice := [name for name, count in names.items() if count > 1 or name in RESERVED]:
-        raise InputError(
-            f"{file}: {twice[0]!r} cannot name an arm, or names two arms; choose another name"
-        )
     worlds = (jobs and jobs.worlds) or _recorded_worlds(out) or _default_worlds(chosen[0].config)
-    plan = Plan(question=question, worlds=worlds, fork=sources, arms=tuple(chosen))
-    if (count := len(plan.jobs())) > plans.LARGEST:
-        raise InputError(
-            f"{file}: {count:,} jobs are more than {plans.LARGEST:,}; raise jobs.worlds"
-        )
-    return plan
+    try:
+        return Plan(question=question, worlds=worlds, fork=sources, arms=tuple(chosen))
+    except ValidationError as error:
+        raise InputError(f"{file}: {first_fault(error, Plan)}") from None
 
 
 def _refuse_unknown(values: dict[str, Any], file: Path) -> None:
