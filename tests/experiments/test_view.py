@@ -93,23 +93,6 @@ def test_the_first_jobs_are_listed_and_the_others_are_counted(count: int) -> Non
     assert more == ([f"and {count - SHOWN} more"] if count > SHOWN else [])
 
 
-def test_time_left_is_that_of_the_slowest_job_in_each_round_of_jobs(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """Two processes have seven jobs to do, which are four rounds of 30 s."""
-    now = at(monkeypatch, 50.0)
-    jobs = {"done": 3, "running": 2, "failed": 0, "waiting": 5}
-    under_way = running(0, 30.0, 2e6), running(1, 10.0, 1e6)
-    status = CampaignStatus("?", jobs, (), under_way, ())
-    clock = Clock()
-    now.seconds += 75
-    assert clock.left(status) == 120
-    text = "3.0 M organism-ticks/s; about 2 min 0 s left"
-    jobs_text = "3 of 10 jobs done, 2 under way, 0 failed, 5 waiting"
-    assert line(status, clock) == f"12:00:00  {jobs_text}; {text}"
-    assert shown(status, clock)[-1] == [f"{jobs_text}; {text}; 1 min 15 s so far"]
-
-
 @pytest.mark.parametrize("before", [0, 3])
 def test_time_left_depends_on_the_pace_of_jobs_since_the_command_began(
     before: int, monkeypatch: pytest.MonkeyPatch
@@ -123,9 +106,13 @@ def test_time_left_depends_on_the_pace_of_jobs_since_the_command_began(
         CampaignStatus("?", {"done": done, **open_jobs}, (), under_way, ())
         for done in (before, before + 2)
     )
-    for seconds, status, left in ((0, first, 3000), (60, first, 3000), (40, later, 300)):
+    for seconds, status, left in ((0, first, None), (60, first, None), (40, later, 300)):
         now.seconds += seconds
         assert clock.left(status) == left
+    now.seconds += 25
+    text = "; about 6 min 15 s left"
+    assert line(later, clock).endswith(f"4 waiting{text}")
+    assert shown(later, clock)[-1][0].endswith(f"4 waiting{text}; 2 min 5 s so far")
 
 
 def test_the_speed_is_shown_even_if_the_time_left_is_unknown(

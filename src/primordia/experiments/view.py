@@ -54,16 +54,14 @@ class Clock:
         return time.perf_counter() - self._began
 
     def left(self, status: CampaignStatus) -> float | None:
-        """Estimate, from the jobs done so far or under way, the seconds until all jobs are done."""
+        """Estimate the seconds until all jobs are done; None before this command has done a job."""
         done = status.jobs["done"]
         if self._done < 0:
             self._done = done
+        if done == self._done:
+            return None
         open_jobs = status.jobs["waiting"] + status.jobs["running"]
-        if done > self._done:
-            return self.seconds() / (done - self._done) * open_jobs
-        longest = max((entry.left_s or 0.0 for entry in status.running), default=0.0)
-        rounds = -(-open_jobs // max(len(status.running), 1))
-        return longest * rounds or None
+        return self.seconds() / (done - self._done) * open_jobs
 
 
 class _Paced:
