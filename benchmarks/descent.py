@@ -18,7 +18,7 @@ from primordia.law.events import BIRTHS, DEATHS
 from primordia.law.world import BirthCause, Cause
 from primordia.runs import checkpoint
 from primordia.runs.archive import Archive
-from primordia.runs.record import Recorder
+from primordia.runs.recorder import Recorder
 
 NONE = -1
 

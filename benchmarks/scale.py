@@ -77,7 +77,7 @@ def births_recorded_per_second() -> float:
     import jax.numpy as jnp
 
     from primordia.law.events import BIRTHS, Events, Rows
-    from primordia.runs.record import Recorder
+    from primordia.runs.recorder import Recorder
     from primordia.runs.schema import Schema
 
     rng, rows, chunks = np.random.default_rng(0), 2**18, 24

@@ -12,7 +12,7 @@ from primordia.config import Stop, load
 from primordia.engine.engine import Engine
 from primordia.runs.loop import drive
 from primordia.runs.manifest import Progress
-from primordia.runs.record import Recorder
+from primordia.runs.recorder import Recorder
 from primordia.runs.schema import Schema
 from worlds import median, organism_ticks, random_phase, random_rate, rate, saturated_phase
 

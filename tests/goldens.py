@@ -134,7 +134,7 @@ def genomes_hash(run: Run, births: pa.Table) -> str:
         oldest, _ = longest_life(run.lives().of_world(world))
         chosen = [oldest, own[0], own[len(own) // 2], own[-1], *mutants[-1:]]
         for organism in chosen:
-            digest.update(run.rebuild(int(organism), world).astype("<f4").tobytes())
+            digest.update(run.organism(int(organism), world).genome().astype("<f4").tobytes())
     return digest.hexdigest()
 
 

@@ -38,7 +38,7 @@ LIVE = (
     SETTINGS
     + """
 import primordia
-primordia.load(sys.argv[1]).rebuild(3)
+primordia.load(sys.argv[1]).organism(3).genome()
 assert settings() == before
 assert {**os.environ, "XLA_FLAGS": ""} == {**variables, "XLA_FLAGS": ""}
 law = {"cells": 8, "hazard": 0.002, "sample_every": 500}

@@ -229,22 +229,21 @@ def validated(values: dict[str, Any], source: str) -> Config:
     Raises:
         InputError: a value is wrong; the message, one line, names the setting and the source.
     """
-    config = _parsed(values, source, partial(_settings_of_parts, values))
+    config = parsed(values, source, partial(_settings_of_parts, values))
     return checked(_completed(config, source), source)
 
 
-def parsed(values: dict[str, Any], source: str) -> Config:
+def parsed(values: dict[str, Any], source: str, others: Callable[[], list[str]] = list) -> Config:
     """Return a Config of these values, checked as far as no code of a part is executed.
+
+    Args:
+        values: settings, as nested tables.
+        source: the file or task that they come from, for messages.
+        others: returns names of parts' settings, which the message for a wrong name may suggest.
 
     Raises:
         InputError: a value is wrong; the message, one line, names the setting and the source.
     """
-    return _parsed(values, source, list)
-
-
-def _parsed(values: dict[str, Any], source: str, others: Callable[[], list[str]]) -> Config:
-    """Return a Config; `others` are names of parts' settings, which the message for a wrong name
-    may suggest."""
     try:
         check_values(values)
         return Config.model_validate(replaced(values, NONE, None))

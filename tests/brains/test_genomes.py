@@ -104,7 +104,9 @@ def test_organisms_are_exported_in_the_given_order_or_the_longest_life(
     assert here("export", run.path, tmp_path / one).returncode == 0
     for file, organisms in ((two, (5, 30)), (one, (run.oldest().id,))):
         found = genomes.read([str(tmp_path / file)], LAYOUT)
-        np.testing.assert_array_equal(found, [run.rebuild(organism) for organism in organisms])
+        np.testing.assert_array_equal(
+            found, [run.organism(organism).genome() for organism in organisms]
+        )
 
 
 def broken(path: Path, kind: str) -> None:

@@ -182,21 +182,22 @@ class Number:
 @pytest.mark.parametrize("arms", [("a",), ("a", "b")])
 @pytest.mark.parametrize("as_json", [False, True])
 def test_each_of_several_arms_has_a_table_and_a_folder_of_figures(
-    arms: tuple[str, ...], as_json: bool, capsys: pytest.CaptureFixture[str]
+    arms: tuple[str, ...], as_json: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """With --json, only the JSON is printed on standard output."""
     found = {f"runs/{name}": [Number(place)] for place, name in enumerate(arms)}
     pictures = [Path("x.png"), Path("x.svg")]
     with (
-        patch.object(options, "_drawn", return_value=pictures) as drawn,
+        patch("primordia.figures.assays.effects.draw", side_effect=tuple) as draw,
+        patch("primordia.figures.style.save", return_value=pictures) as save,
         patch.object(options, "show_table") as table,
     ):
-        options.tell(
-            "effects", found, as_json, Path("OUT"), lambda arm, of: tables.Told(arm, "h", of)
-        )
-    folders = [Path("OUT", name) if len(arms) > 1 else Path("OUT") for name in arms]
-    assert drawn.call_args_list == [
-        call("effects", of, folder) for of, folder in zip(found.values(), folders, strict=True)
+        options.tell("effects", found, as_json, tmp_path, lambda arm, of: tables.Told(arm, "h", of))
+    folders = [tmp_path / name if len(arms) > 1 else tmp_path for name in arms]
+    assert draw.call_args_list == [call(of) for of in found.values()]
+    assert save.call_args_list == [
+        call(tuple(of), folder / "effects")
+        for of, folder in zip(found.values(), folders, strict=True)
     ]
     shown = [call(arm, "h", of, ()) for arm, of in found.items()]
     assert table.call_args_list == ([] if as_json else shown)

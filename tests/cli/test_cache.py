@@ -8,7 +8,6 @@ import pytest
 
 from primordia import own_code
 from primordia.cli import cache
-from primordia.cli.commands import commands
 from primordia.runs import code
 from tests.commands import COMMAND, environment
 
@@ -25,11 +24,11 @@ def test_a_command_keeps_its_compiled_code(tmp_path: Path) -> None:
         name: value for name, value in environment().items() if not name.startswith(others)
     }
 
-    def run(name: str, *words: str) -> set[str]:
+    def run(name: str, **more: str) -> set[str]:
         task = ["run", "CartPole-survival", "--ticks", "1", "--cells", "4", "--quiet"]
         done = subprocess.run(
-            [*COMMAND, *task, "--out", str(tmp_path / name), *words],
-            env=variables | home,
+            [*COMMAND, *task, "--out", str(tmp_path / name)],
+            env=variables | home | more,
             capture_output=True,
             text=True,
         )
@@ -37,7 +36,7 @@ def test_a_command_keeps_its_compiled_code(tmp_path: Path) -> None:
         files = (tmp_path / "cache").rglob("*-cache")
         return {str(file.relative_to(tmp_path / "cache")) for file in files}
 
-    assert run("first", "--no-cache") == set()
+    assert run("first", JAX_ENABLE_COMPILATION_CACHE="false") == set()
     kept = run("second")
     assert kept
     assert all(file.startswith(f"primordia/compiled/{cache.processor()}/") for file in kept)
@@ -113,15 +112,3 @@ def test_only_the_features_of_the_first_core_count(line: str, tmp_path: Path) ->
 
     assert named("x") != named("y")
     assert named("x") == named("x", clock=3000) == named("x", other="y")
-
-
-def test_the_cache_is_switched_off_before_the_check_of_an_option_imports_jax() -> None:
-    """JAX reads the variable that `--no-cache` sets when it is imported."""
-    found = [
-        option
-        for command in commands.commands.values()
-        for option in command.params
-        if option.name == "no_cache"
-    ]
-    assert len(found) > 5
-    assert all(option.is_eager for option in found)

@@ -83,10 +83,9 @@ def test_a_command_whose_reader_has_gone_ends_silently(
 
 
 def test_every_command_is_listed_once_under_a_heading() -> None:
-    names = [name for group in commands.GROUPS.values() for name in group]
-    assert set(names) == {each.name for part in commands.PARTS for each in part.COMMANDS}
-    assert len(names) == len(set(names))
     listed = here("--help").stdout
     for heading, group in commands.GROUPS.items():
         part = listed.partition(f"\n{heading}:\n")[2].partition("\n\n")[0]
-        assert re.findall(r"^  ([a-z]+) +[A-Z]", part, re.MULTILINE) == list(group)
+        assert re.findall(r"^  ([a-z]+) +[A-Z]", part, re.MULTILINE) == [
+            each.name for each in group
+        ]

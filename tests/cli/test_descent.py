@@ -203,9 +203,9 @@ def test_only_a_sweep_past_half_of_the_living_is_under_way() -> None:
     ("words", "figure", "names"),
     [
         (("ancestors",), "descent", ["ancestors"]),
-        (("lines", "--world", "all"), "lines", ["lines-3", "lines-12"]),
+        (("lineages", "--world", "all"), "lines", ["lines-3", "lines-12"]),
     ],
-    ids=["ancestors", "lines"],
+    ids=["ancestors", "lineages"],
 )
 def test_the_files_of_each_figure_are_printed_apart_from_json(
     words: tuple[str, ...], figure: str, names: list[str], as_json: tuple[str, ...], tmp_path: Path
@@ -219,8 +219,8 @@ def test_the_files_of_each_figure_are_printed_apart_from_json(
 
     run = MagicMock()
     run.ancestors.return_value.to_dict.return_value = {}
-    run.lines.return_value = [MagicMock(world=number) for number in (3, 12)]
-    for each in run.lines.return_value:
+    run.lineages.return_value = [MagicMock(world=number) for number in (3, 12)]
+    for each in run.lineages.return_value:
         each.to_dict.return_value = {}
     with (
         patch("primordia.api.load", return_value=run),

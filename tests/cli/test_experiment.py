@@ -10,10 +10,10 @@ from unittest.mock import MagicMock, call, create_autospec, patch
 import pytest
 
 from primordia import interrupts
-from primordia.cli import campaign_view
+from primordia.experiments import view
 from primordia.experiments.campaign import Campaign
 from primordia.experiments.dispatch import Result
-from primordia.experiments.ending import Ending
+from primordia.experiments.plan import Ending
 from tests.commands import complains, here
 
 FILE, OUT = Path("a.toml"), Path("OUT")
@@ -36,7 +36,7 @@ def chosen() -> Iterator[MagicMock]:
     with (
         patch("primordia.experiments.campaign.begin", return_value=made) as made.begin,
         patch("primordia.experiments.campaign.planned", return_value=made) as made.planned,
-        patch("primordia.experiments.places.place_for") as made.place_for,
+        patch("primordia.experiments.dispatch.place_for") as made.place_for,
         patch("primordia.experiments.dispatch.live_all", return_value=Result()) as made.live_all,
         patch("primordia.experiments.job.ending_of") as made.ending_of,
     ):
@@ -50,7 +50,7 @@ def test_the_options_reach_the_jobs(chosen: MagicMock) -> None:
     assert chosen.place_for.call_args == call(OUT, 1205, None, None, **plain)
     chosen.live_all.reset_mock()
     ways = ("--jobs", 3, "--ray", "there", "--checkpoint-every", 7, "--device", "gpu")
-    with patch.object(campaign_view, "watching") as watching:
+    with patch.object(view, "watching") as watching:
         done = here("experiment", FILE, "--out", OUT, "--only", "a", "--only", "b", *ways)
     assert done.returncode == 0
     assert chosen.begin.call_args == call(FILE, OUT)

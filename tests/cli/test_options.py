@@ -26,8 +26,7 @@ def run() -> Iterator[MagicMock]:
     for name in ("ancestors", "organism"):
         getattr(noted, name).return_value = MagicMock()
     noted.ancestors.return_value.to_dict.return_value = {}
-    noted.organism.return_value.evaluate.return_value.to_dict.return_value = {}
-    for name in ("standings", "lines", "heredity", "threshold", "resume"):
+    for name in ("standings", "lineages", "heredity", "threshold", "resume"):
         getattr(noted, name).return_value = []
     noted.shadow.return_value.to_dict.return_value = {}
     with patch("primordia.api.load", return_value=noted) as noted.loaded:
@@ -72,10 +71,10 @@ CALLS: dict[tuple[Any, ...], Any] = {
     ("ancestors", RUN, 0, "--world", 0, "--json"): call.ancestors(0, 0, report),
     ("ancestors", RUN, "--world", 0, "--json"): call.ancestors(None, 0, report),
     ("ancestors", RUN, "--json"): call.ancestors(None, None, report),
-    ("lines", RUN, "--world", 2, "--at", 9, "--json"): call.lines(2, 9),
-    ("lines", RUN, "--world", 0, "--at", 0, "--json"): call.lines(0, 0),
-    ("lines", RUN, "--json"): call.lines(0, None),
-    ("lines", RUN, "--world", "all", "--json"): call.lines(None, None),
+    ("lineages", RUN, "--world", 2, "--at", 9, "--json"): call.lineages(2, 9),
+    ("lineages", RUN, "--world", 0, "--at", 0, "--json"): call.lineages(0, 0),
+    ("lineages", RUN, "--json"): call.lineages(0, None),
+    ("lineages", RUN, "--world", "all", "--json"): call.lineages(None, None),
     ("resume", RUN, "--inexact", *LIMITS, *WAYS): call.resume(inexact=True, **ENDS, **WORLDS),
     ("resume", RUN, "--quiet"):
         call.resume(inexact=False, checkpoint_every=60.0, listen=None),
@@ -124,12 +123,12 @@ def test_a_run_is_begun_with_the_settings_of_its_flags(
     given = {"cells": 8, "ancestors": ["a", "b"], "stop": ENDS}
     with patch("primordia.api.run") as asked:
         ways = (*WAYS, "--device", "gpu")
-        does("run", task, "--out", OUT, "--resume", *flags, *LIMITS, *ways)
-        asked.assert_called_once_with(task, OUT, given, resume=True, device="gpu", **WORLDS)
+        does("run", task, "--out", OUT, *flags, *LIMITS, *ways)
+        asked.assert_called_once_with(task, OUT, given, device="gpu", **WORLDS)
         does("run", task, "--seed", 3, "--quiet")
         own = {"checkpoint_every": 60.0, "device": "cpu", "listen": None}
         place = Path("runs", f"{task}-seed3")
-        assert asked.call_args == call(task, place, {"seed": 3}, resume=False, **own)
+        assert asked.call_args == call(task, place, {"seed": 3}, **own)
 
 
 def test_a_life_is_lived_again_with_the_given_options(run: MagicMock) -> None:
@@ -143,15 +142,6 @@ def test_a_life_is_lived_again_with_the_given_options(run: MagicMock) -> None:
         assert asked.call_args == call(opened, 0, 0, since=0, save=None, film=None)
         does("relive", RUN, 5, "--json")
         assert asked.call_args == call(opened, 5, 0, since=None, save=None, film=None)
-
-
-def test_one_organism_is_evaluated_in_its_world(run: MagicMock) -> None:
-    for organism, world, number in ((5, (), 0), (5, ("--world", 2), 2), (0, ("--world", 0), 0)):
-        asked = ("--organism", organism, *world, "--freeze-senses", "--games", 3, "--json")
-        does("evaluate", RUN, *asked)
-        run.organism.assert_called_with(organism, number)
-        options = {"games": 3, "ticks": 100_000, "senses": "frozen", "habitat": {}}
-        run.organism.return_value.evaluate.assert_called_with(**options)
 
 
 SHORT = ("--games", 2, "--ticks", 9, "--sticky", 0.5, "--json")
@@ -264,11 +254,6 @@ def test_a_run_may_have_the_name_of_a_task(
         of_run.return_value.source = "a run"
         does("assay", "ablate", "Pong-survival", 5, "--world", 2, "--json")
     of_run.assert_called_once_with(run.opened.return_value, [(5, 2)], {})
-
-
-@pytest.mark.parametrize("words", [("a.safetensors",), (RUN, "--task", "T")], ids=str)
-def test_only_a_run_has_lines_of_descent(words: tuple[Any, ...]) -> None:
-    complains(here("assay", "line", *words), 2, "the assay `line` needs a run")
 
 
 @pytest.mark.parametrize("source", ["Pong-survival", "gym:Pond-v0", "a.toml", "a.safetensors"])

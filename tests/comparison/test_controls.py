@@ -94,7 +94,7 @@ def test_founders_are_drawn_once_each_and_are_none_of_the_runs_own(poles: primor
     some, more = founders(run, 0, 5), founders(run, 0, 300)
     np.testing.assert_array_equal(some, more[:5])
     assert len(np.unique(more, axis=0)) == 300
-    first = poles.rebuild(0)
+    first = poles.organism(0).genome()
     assert not (more == first).all(axis=1).any()
     assert not (founders(run, 1, 5) == some).all(axis=1).any()
     assert more.std() == pytest.approx(first.std(), rel=0.3)

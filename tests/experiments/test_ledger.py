@@ -18,9 +18,8 @@ import primordia
 from primordia.errors import InputError, InUseError, Trouble
 from primordia.experiments import job as jobs
 from primordia.experiments.campaign import begin
-from primordia.experiments.ending import Ending
 from primordia.experiments.ledger import SILENT, Entry, Ledger, WorldCounts
-from primordia.experiments.plan import Job
+from primordia.experiments.plan import Ending, Job
 from tests.experiments.meadows import write
 
 JOB = Job(0, "a", 0, 1, "a/0")

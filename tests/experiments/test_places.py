@@ -15,14 +15,13 @@ import primordia
 from primordia import api
 from primordia.cli import experiment as command
 from primordia.errors import InputError, Trouble
+from primordia.experiments import dispatch, on_ray
 from primordia.experiments import job as jobs
-from primordia.experiments import on_ray, places
 from primordia.experiments import plan as plans
 from primordia.experiments.campaign import Campaign, begin
 from primordia.experiments.dispatch import live_all
-from primordia.experiments.ending import Ending
 from primordia.experiments.here import PATIENCE, Here
-from primordia.experiments.plan import Job
+from primordia.experiments.plan import Ending, Job
 from tests.commands import here
 from tests.experiments.meadows import write
 
@@ -61,8 +60,8 @@ def test_jobs_run_at_once_on_each_core_unless_a_number_is_given(
 ) -> None:
     monkeypatch.setenv("PRIMORDIA_CORES", "3")
     made = MagicMock()
-    monkeypatch.setattr(places, "Here", made)
-    places.place_for(Path("out"), left, asked, None, 7.0, device)
+    monkeypatch.setattr(dispatch, "Here", made)
+    dispatch.place_for(Path("out"), left, asked, None, 7.0, device)
     made.assert_called_once_with(Path("out"), at_once, 7.0, device)
 
 
@@ -71,8 +70,8 @@ def test_a_cluster_has_an_address_or_is_that_of_this_machine(
     given: str, address: str | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     made = MagicMock()
-    monkeypatch.setattr(places, "OnRay", made)
-    places.place_for(Path("out"), 4, None, given, 7.0, "gpu")
+    monkeypatch.setattr(dispatch, "OnRay", made)
+    dispatch.place_for(Path("out"), 4, None, given, 7.0, "gpu")
     made.assert_called_once_with(Path("out"), 7.0, "gpu", address)
 
 
@@ -273,7 +272,7 @@ def test_jobs_of_other_processes_are_neither_done_nor_failed(tmp_path: Path) -> 
 def test_the_command_ends_with_the_number_of_jobs_that_are_not_done(
     states: list[str], status: int, says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(places, "place_for", lambda *_, **__: Place(*states))
+    monkeypatch.setattr(dispatch, "place_for", lambda *_, **__: Place(*states))
     done = here("experiment", write(tmp_path), "--out", tmp_path / "out", "--quiet")
     assert done.returncode == status
     lines = done.stderr.splitlines()
@@ -326,7 +325,7 @@ def test_one_job_has_the_interval_and_the_device_of_the_command(
 
 def test_a_cluster_has_no_number_of_jobs() -> None:
     with pytest.raises(InputError, match="--jobs is for jobs on this machine"):
-        places.place_for(Path("out"), 4, 1, "")
+        dispatch.place_for(Path("out"), 4, 1, "")
 
 
 def test_numbers_of_jobs_have_a_comma_after_the_thousands() -> None:

@@ -93,7 +93,7 @@ def test_the_largest_number_of_jobs_is_allowed(
     monkeypatch.setattr(plans, "LARGEST", 4)
     begin(write(tmp_path), tmp_path / "out")
     monkeypatch.setattr(plans, "LARGEST", 3)
-    with pytest.raises(InputError, match="it has more than 3 jobs"):
+    with pytest.raises(InputError, match="4 jobs are more than 3"):
         plans.recorded(tmp_path / "out")
     with pytest.raises(InputError, match=r"4 jobs are more than 3; raise jobs\.worlds"):
         read(write(tmp_path), tmp_path / "new")
@@ -136,13 +136,13 @@ def test_words_of_a_question_may_change_and_settings_may_not(tmp_path: Path) -> 
         ({"arms": [{"name": "a/b"}]}, "arm 'a/b': name"),
         ({"arms": [{"name": ".."}]}, "arm '..': name"),
         ({"arms": [{"hazard": 0.1}]}, "table has no `name`"),
-        ({"arms": []}, "one or more arms"),
-        ({"arms": "heredity"}, "one or more arms"),
+        ({"arms": []}, "arms: list should have at least 1 item"),
+        ({"arms": "heredity"}, "arms: input should be a valid list, not 'heredity'"),
         ({"questions": "?"}, "there is no setting 'questions'; did you mean 'question'?"),
         ({"sees": 3}, "there is no setting 'sees'; did you mean 'seeds'?"),
-        ({"question": 3}, "question must be a text"),
-        ({"jobs": {"world": 3}}, "jobs: there is no setting 'world'; did you mean 'worlds'?"),
-        ({"jobs": {"worlds": 0}}, "jobs: worlds: "),
+        ({"question": 3}, "question: input should be a valid string, not 3"),
+        ({"jobs": {"world": 3}}, "there is no setting 'jobs.world'; did you mean 'jobs.worlds'?"),
+        ({"jobs": {"worlds": 0}}, "jobs.worlds: "),
         ({"jobs": {"worlds": 1}, "seeds": 60_000}, "120,000 jobs are more than 100,000"),
         ({"task": None}, "`task` is missing"),
         ({"task": "CartPole-survivl"}, "did you mean 'CartPole-survival'?"),
@@ -150,8 +150,8 @@ def test_words_of_a_question_may_change_and_settings_may_not(tmp_path: Path) -> 
         ({"arms": [{"name": "a", "hazrd": 0.1}]}, "arm 'a': .*did you mean 'hazard'?"),
         ({"arms": [{"name": "a", "hazard": 2.0}]}, "arm 'a': .*hazard"),
         ({"fork": {"of": "none", "at": 5}}, "none is not a run"),
-        ({"fork": {"at": 5}}, "fork: of"),
-        ({"fork": {"of": "meadows/mild", "at": 0}}, "fork: at"),
+        ({"fork": {"at": 5}}, "fork.of is missing"),
+        ({"fork": {"of": "meadows/mild", "at": 0}}, "fork.at: "),
     ],
 )  # fmt: skip
 def test_a_wrong_file_is_one_clear_line(
@@ -291,7 +291,7 @@ def test_experiments_do_not_fork_each_other_in_a_circle(names: list[str], tmp_pa
 @pytest.mark.parametrize("name", ["jobs", "fork"])
 def test_a_table_of_an_experiment_is_a_table(name: str, tmp_path: Path) -> None:
     complains(
-        here("experiment", write(tmp_path, **{name: 0})), 2, f"{name} must be a table [{name}]"
+        here("experiment", write(tmp_path, **{name: 0})), 2, f"{name}: input should be a valid"
     )
 
 

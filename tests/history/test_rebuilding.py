@@ -14,7 +14,7 @@ import primordia
 from primordia.errors import InputError
 from primordia.history.pedigree import genomes
 from primordia.history.rebuilding import descent, rebuild_all
-from primordia.runs import checkpoint, loop, record
+from primordia.runs import checkpoint, loop, recorder
 from primordia.runs.archive import Archive
 from tests.worlds import MEADOW, MILL, config, merged
 
@@ -127,7 +127,7 @@ def test_genomes_are_rebuilt_while_a_run_continues(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Some rows are in segments, other rows in open tails."""
-    monkeypatch.setattr(record, "SEGMENT_ROWS", 100)
+    monkeypatch.setattr(recorder, "SEGMENT_ROWS", 100)
     values, _ = WORLDS["blocks that mutate apart"]
     run = tmp_path / "run"
 
@@ -157,7 +157,7 @@ def test_a_copy_has_its_parents_genome_and_a_mutant_has_not(deep: Path) -> None:
 @pytest.mark.parametrize(("organism", "world"), [(-1, 0), (10**9, 0), (0, 1), (0, -1)])
 def test_an_organism_that_never_lived_is_an_error(deep: Path, organism: int, world: int) -> None:
     with pytest.raises(InputError, match=f"no organism {organism} was born in world {world}"):
-        primordia.Run(deep).rebuild(organism, world)
+        primordia.Run(deep).organism(organism, world).genome()
 
 
 @pytest.mark.slow

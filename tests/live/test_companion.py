@@ -103,7 +103,7 @@ def test_an_organism_has_its_own_numbers(
     cell: Any = shown.find(of, None)
     for _ in range(steps):
         cell = shown.find(of, None, step=1)
-    rows = text(shown.rows(of, None, Room(60, 20, letters=False)))
+    rows = text(shown.rows(of, None, Room(60, 20)))
     food = [] if eaten is None else [f"food eaten {eaten}"]
     assert rows == [
         title, f"age        {age}", f"energy     {energy}", *food, "does next  push left",
@@ -115,18 +115,16 @@ def test_an_organism_has_its_own_numbers(
 @pytest.mark.usefixtures("perceived")
 def test_what_does_not_fit_is_left_out() -> None:
     shown, of = Companion(), engine(metabolism=None)
-    rows = text(shown.rows(of, 1, Room(60, 20, letters=False)))
+    rows = text(shown.rows(of, 1, Room(60, 20)))
     assert [row.split(" ")[0] for row in rows[1:]] == ["age", "food", "does", "senses", "memory"]
     for height in (1, 2, 4):
-        assert text(shown.rows(of, 1, Room(60, height, letters=False))) == rows[:height]
-    titles = [
-        text(shown.rows(of, 1, Room(width, 1, letters=False)))[0] for width in (31, 30, 21, 20, 9)
-    ]
+        assert text(shown.rows(of, 1, Room(60, height))) == rows[:height]
+    titles = [text(shown.rows(of, 1, Room(width, 1)))[0] for width in (31, 30, 21, 20, 9)]
     assert titles == [
         "organism 3 in cell 2 of world 1", "3 in cell 2 of world 1", "organism 3", "organism 3",
         "organism ",
     ]  # fmt: skip
-    assert text(shown.rows(of, 1, Room(15, 4, letters=False)))[3] == "does next  push"
+    assert text(shown.rows(of, 1, Room(15, 4)))[3] == "does next  push"
 
 
 @pytest.mark.usefixtures("perceived")
@@ -134,7 +132,7 @@ def test_in_a_single_world_no_world_is_named_and_an_action_without_words_is_a_nu
     of = engine()
     of.law.worlds = 1
     of.habitat.caption = None
-    rows = text(Companion().rows(of, 0, Room(60, 20, letters=False)))
+    rows = text(Companion().rows(of, 0, Room(60, 20)))
     assert rows[0] == "organism 3 in cell 0"
     assert "does next  [ 0.25 -1.  ]" in rows
 
@@ -143,11 +141,10 @@ def test_in_a_single_world_no_world_is_named_and_an_action_without_words_is_a_nu
 @pytest.mark.parametrize(
     ("room", "size"),
     [
-        (Room(80, 16, letters=False), (40, 10)),  # ten rows are left: twenty points high
-        (Room(20, 40, letters=False), (20, 5)),
-        (Room(80, 10, letters=False), (16, 4)),
-        (Room(80, 9, letters=False), None),  # a picture of three rows would be too small
-        (Room(80, 30, letters=True), None),
+        (Room(80, 16), (40, 10)),  # ten rows are left: twenty points high
+        (Room(20, 40), (20, 5)),
+        (Room(80, 10), (16, 4)),
+        (Room(80, 9), None),  # a picture of three rows would be too small
     ],
 )
 def test_a_picture_fills_its_room_without_the_margin_for_captions(
@@ -173,7 +170,7 @@ def test_a_picture_without_a_margin_is_drawn_completely() -> None:
     of, pixels = engine(), np.full((40, 40, 3), (255, 0, 0), np.uint8)
     pixels[:MARGIN, :20] = [int(PAPER[at : at + 2], 16) for at in (1, 3, 5)]
     of.habitat.picture = lambda *_: Image.fromarray(pixels)
-    drawn = text(Companion().rows(of, 0, Room(40, 26, letters=False))[1:-5])
+    drawn = text(Companion().rows(of, 0, Room(40, 26))[1:-5])
     assert [len(row) for row in drawn] == [40] * 20
 
 

@@ -109,23 +109,6 @@ def test_lines_are_followed_in_as_many_worlds_as_the_screen_has_rows(
     assert asked == [2, 30, 30, 30]
 
 
-def test_births_and_deaths_of_every_chunk_and_world_are_kept(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    frames, made, kept = Frames(0.0, monkeypatch), list[Any](), list[Any]()
-
-    def ground(cells: int, worlds: int) -> Any:
-        made.append((cells, worlds))
-        return SimpleNamespace(follow=kept.append)
-
-    monkeypatch.setattr(views, "Ground", ground)
-    chunks = [status(3), status(3)]
-    for chunk in chunks:
-        frames.view(chunk)
-    assert made == [(4, 3)]
-    assert kept == [chunk.engine.events for chunk in chunks]
-
-
 def test_before_the_first_chunk_the_view_says_that_it_compiles() -> None:
     """A view that ends before the first chunk removes these words."""
     shown = view()
@@ -136,17 +119,18 @@ def test_before_the_first_chunk_the_view_says_that_it_compiles() -> None:
 
 
 @pytest.mark.parametrize(
-    ("terminal", "dumb", "keys", "drawn"),
-    [(False, False, False, False), (True, True, True, False), (True, False, True, True),
-     (True, False, False, True)],
+    ("terminal", "dumb", "grey", "keys", "drawn"),
+    [(False, False, False, False, False), (True, True, False, True, False),
+     (True, False, True, True, False), (True, False, False, True, True),
+     (True, False, False, False, True)],
 )  # fmt: skip
-def test_a_view_is_drawn_in_a_terminal_that_can_move_its_cursor(
-    terminal: bool, dumb: bool, keys: bool, drawn: bool, monkeypatch: pytest.MonkeyPatch
+def test_a_view_is_drawn_in_a_terminal_with_colours_that_can_move_its_cursor(
+    terminal: bool, dumb: bool, grey: bool, keys: bool, drawn: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Otherwise, plain lines are printed. The view has keys if standard input is a terminal too."""
     made, keyboard = MagicMock(), MagicMock(there=keys)
     keyboard.return_value.__enter__.return_value = keyboard
-    console = SimpleNamespace(is_dumb_terminal=dumb)
+    console = SimpleNamespace(is_dumb_terminal=dumb, no_color=grey)
     monkeypatch.setattr(watching, "Console", lambda **_: console)
     monkeypatch.setattr(watching, "Keyboard", keyboard)
     monkeypatch.setattr(watching, "View", made)

@@ -16,19 +16,15 @@ Size = tuple[int, int]
 class Parts:
     """Parts that note their rooms. The numbers have three rows; the others fill their rooms."""
 
-    def __init__(self, cell: Any = lambda _: 1, part: str = "") -> None:
-        self.cell, self.part = cell, part
-        self.asked: dict[str, list[Size]] = {"measure": [], "W": [], "n": [], "o": []}
+    def __init__(self, beside: bool = True, part: str = "") -> None:
+        self.beside, self.part = beside, part
+        self.asked: dict[str, list[Size]] = {"W": [], "n": [], "o": []}
 
     def screen(self, width: int, height: int, organism: bool = False) -> list[str]:
         """Return the rows of a screen."""
         draw = self._organism if organism else None
-        room = Room(width, height, letters=False)
-        return text(composed(self._measure, self._scene, self._numbers, draw, room))
-
-    def _measure(self, room: Room) -> int:
-        self.asked["measure"].append((room.width, room.height))
-        return int(self.cell(room))
+        room = Room(width, height)
+        return text(composed(self.beside, self._scene, self._numbers, draw, room))
 
     def _filled(self, name: str, room: Room, rows: int) -> list[Any]:
         self.asked[name].append((room.width, room.height))
@@ -44,13 +40,10 @@ class Parts:
         return self._filled("o", room, room.height)
 
 
-def test_numbers_are_beside_the_world_where_this_makes_no_cell_smaller() -> None:
+def test_numbers_are_beside_a_torus() -> None:
     """The 80 columns have 52 for the world, 2 between, and 26 for the numbers."""
     parts = Parts()
     rows = parts.screen(80, 24)
-    assert parts.asked["measure"] == [(52, 22), (80, 18)], (
-        "the world beside the numbers, and above them"
-    )
     assert parts.asked["W"] == [(52, 22)]
     assert parts.asked["n"] == [(80, 12), (26, 23)], "the first only counts the rows of the numbers"
     assert rows[0] == ""
@@ -59,19 +52,11 @@ def test_numbers_are_beside_the_world_where_this_makes_no_cell_smaller() -> None
     assert rows[23:] == ["colour: line of descent"]
 
 
-def test_numbers_are_below_the_world_where_this_makes_cells_larger() -> None:
-    parts = Parts(lambda room: room.width // 10)
+def test_numbers_are_below_a_ring() -> None:
+    parts = Parts(beside=False)
     rows = parts.screen(80, 24)
     assert parts.asked["W"] == [(80, 18)]
     assert rows == ["", *["W" * 80] * 18, "colour: line of descent", "", *["n" * 80] * 3]
-
-
-@pytest.mark.parametrize(("height", "taken"), [(8, (52, 8)), (9, (80, 6))])
-def test_a_world_whose_cells_do_not_all_fit_takes_the_larger_room(height: int, taken: Size) -> None:
-    """The room beside the numbers has 52 x 8 or 52 x 9 characters, that above them 80 x 5 or 80 x 6."""
-    parts = Parts(lambda _: 0)
-    parts.screen(80, height)
-    assert parts.asked["W"] == [taken]
 
 
 @pytest.mark.parametrize(("width", "beside"), [(48, True), (47, False)])
@@ -87,7 +72,7 @@ def test_a_world_with_numbers_beside_it_has_at_least_twenty_columns(
 def test_empty_rows_are_between_the_parts_of_a_screen_of_twenty_rows(
     height: int, spaces: int
 ) -> None:
-    rows = Parts(lambda room: room.width // 10).screen(80, height)
+    rows = Parts(beside=False).screen(80, height)
     assert [row for row in rows if not row] == [""] * 2 * spaces
     assert len(rows) == height
 
@@ -95,7 +80,7 @@ def test_empty_rows_are_between_the_parts_of_a_screen_of_twenty_rows(
 @pytest.mark.parametrize(("height", "legend"), [(15, True), (14, False)])
 def test_a_world_of_twelve_rows_has_a_legend(height: int, legend: bool) -> None:
     """Three rows are numbers."""
-    rows = Parts(lambda room: room.width // 10).screen(80, height)
+    rows = Parts(beside=False).screen(80, height)
     assert rows[:-3] == ["W" * 80] * 11 + ["colour: line of descent"] * legend
 
 
@@ -103,21 +88,19 @@ def test_a_world_of_twelve_rows_has_a_legend(height: int, legend: bool) -> None:
 def test_numbers_below_a_world_have_half_of_the_rows_and_at_least_three(
     height: int, rows: int
 ) -> None:
-    parts = Parts(lambda room: room.width // 10)
+    parts = Parts(beside=False)
     parts.screen(80, height)
     assert parts.asked["n"] == [(80, rows)]
 
 
 def test_the_note_about_what_is_shown_takes_a_row_of_the_world() -> None:
-    parts = Parts(lambda room: room.width // 10, part="shown: the first 8 of 10 cells")
+    parts = Parts(beside=False, part="shown: the first 8 of 10 cells")
     rows = parts.screen(80, 24)
     assert parts.asked["W"] == [(80, 18), (80, 17)]
     assert rows[1:20] == [
         *["W" * 80] * 17, "shown: the first 8 of 10 cells", "colour: line of descent",
     ]  # fmt: skip
-    assert (
-        Parts(lambda room: room.width // 10, part="shown: a").screen(20, 24)[19] == "colour: line"
-    )
+    assert Parts(beside=False, part="shown: a").screen(20, 24)[19] == "colour: line"
 
 
 def test_an_organism_is_below_the_numbers_that_are_beside_the_world() -> None:
@@ -139,7 +122,7 @@ def test_an_organism_beside_its_world_has_two_fifths_of_the_width(
     width: int, organism: int
 ) -> None:
     """It has 28 to 64 columns. The world has the rest."""
-    parts = Parts(lambda room: room.width // 10)
+    parts = Parts(beside=False)
     rows = parts.screen(width, 24, organism=True)
     assert parts.asked["o"] == [(organism, 19)]
     world = width - organism - 2
@@ -152,7 +135,7 @@ def test_an_organism_beside_its_world_has_two_fifths_of_the_width(
 def test_an_organism_takes_the_place_of_a_world_that_would_be_too_narrow(
     width: int, organism: int
 ) -> None:
-    parts = Parts(lambda room: room.width // 10)
+    parts = Parts(beside=False)
     rows = parts.screen(width, 24, organism=True)
     assert parts.asked["W"] == []
     assert rows == ["", *["o" * organism] * 19, "", *["n" * width] * 3]

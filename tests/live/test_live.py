@@ -71,10 +71,9 @@ def shown(made: Engine, chunks: int = 2, **options: Any) -> tuple[str, list[str]
 
 @pytest.mark.parametrize(("width", "height"), [(80, 24), (40, 24), (200, 60), (20, 8), (3, 2)])
 def test_the_view_fits_any_terminal(running: tuple[str, Engine], width: int, height: int) -> None:
-    for letters in (False, True):
-        _, frame = shown(running[1], width=width, height=height, no_color=letters)
-        assert 0 < len(frame) <= height
-        assert max(map(len, frame)) <= width
+    _, frame = shown(running[1], width=width, height=height)
+    assert 0 < len(frame) <= height
+    assert max(map(len, frame)) <= width
 
 
 def test_the_view_shows_time_population_and_lines(running: tuple[str, Engine]) -> None:
@@ -110,13 +109,6 @@ def test_the_view_follows_a_terminal_that_changes_its_size(running: tuple[str, E
             rows = text(view._rows(loop.Status(made, 1.0)))
             assert len(rows) < size[1]
             assert size[0] // 2 < max(map(len, rows))
-
-
-def test_without_colours_letters_distinguish_the_lines(running: tuple[str, Engine]) -> None:
-    written, frame = shown(running[1], width=80, height=24, no_color=True)
-    assert not re.search(r"\x1b\[[0-9;]*[34]8;", written)
-    assert "letter: " in "\n".join(frame)
-    assert any(re.search(r"[a-zA-Z·]{8}|([a-z·] ){8}", line) for line in frame[1:])
 
 
 def test_the_view_follows_the_living(running: tuple[str, Engine]) -> None:

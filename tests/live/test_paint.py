@@ -1,4 +1,4 @@
-"""Heights, letters, lights and colours of drawn cells."""
+"""Heights, lights and colours of drawn cells."""
 
 import colorsys
 
@@ -17,7 +17,6 @@ from primordia.live.paint import (
     photograph,
     shades,
     skyline,
-    strip,
 )
 from tests.live.drawn import colours, text
 
@@ -38,24 +37,21 @@ def aged(line: list[int], ticks: list[int]) -> Cells:
 
 def test_bars_grow_with_age_and_empty_cells_are_dots() -> None:
     some = aged([4, 4, EMPTY, 9, 9], [0, 30, 0, 1000, 10**9])
-    assert text(skyline(some, wide=2, tall=2, letters=False)) == ["      █ █ ", "▁ █ · █ █ "]
-    assert text(skyline(some, wide=1, tall=1, letters=True)) == ["▁▄ ▇▇", "ee·jj"]
-    assert text([strip(some, letters=False)]) == ["▁▄·▇▇"]
-    assert text([strip(some, letters=True)]) == ["ee·JJ"]
+    assert text(skyline(some, wide=2, tall=2)) == ["      █ █ ", "▁ █ · █ █ "]
+    assert text(skyline(some, wide=1, tall=1)) == ["▁▄·▇▇"]
 
 
 def test_each_line_has_its_own_colour() -> None:
-    first, second, third = strip(aged([0, 1, 0], [9, 9, 9]), letters=False)
+    ((first, second, third),) = skyline(aged([0, 1, 0], [9, 9, 9]), wide=1, tall=1)
     assert first.style == third.style != second.style
 
 
 def test_a_torus_is_drawn_with_two_rows_in_a_line() -> None:
     some = aged([1, 1, 2, 2, 3, EMPTY], [1000] * 6)
-    rows = field(some, columns=2, scale=1, letters=False)
+    rows = field(some, columns=2, scale=1)
     assert text(rows) == ["▀▀", "▀▀"]
     assert [len(row) for row in rows] == [1, 2], "there is a segment for each stretch of one style"
-    assert len(field(some, columns=2, scale=4, letters=False)) == 6
-    assert text(field(some, columns=2, scale=1, letters=True)) == ["BB", "CC", "D·"]
+    assert len(field(some, columns=2, scale=4)) == 6
 
 
 @pytest.mark.parametrize("tall", [1, 2, 3])
@@ -68,16 +64,9 @@ def test_a_bar_grows_in_equal_steps_from_one_eighth_to_all_of_its_rows(tall: int
         for below in reversed(range(tall))
     ]
     cells = Cells(np.zeros(6, np.int64), AGES)
-    assert text(skyline(cells, wide=1, tall=tall, letters=False)) == expected
+    assert text(skyline(cells, wide=1, tall=tall)) == expected
     wide = ["".join(2 * glyph + " " for glyph in row) for row in expected]
-    assert text(skyline(cells, wide=3, tall=tall, letters=False)) == wide
-
-
-def test_from_half_of_the_scale_on_a_letter_is_a_capital() -> None:
-    line = np.array([0, 0, 25, 26, 27, EMPTY])
-    ages = np.array([np.nextafter(0.5, 0), 0.5, 0.4, 0.6, 0.0, 1.0])
-    assert text([strip(Cells(line, ages), letters=True)]) == ["aAzAb·"]
-    assert text(field(Cells(line, ages), 2, 1, letters=True)) == ["aA", "zA", "b·"]
+    assert text(skyline(cells, wide=3, tall=tall)) == wide
 
 
 def test_light_grows_with_each_quarter_of_the_age() -> None:
@@ -111,9 +100,9 @@ def test_a_character_of_a_mosaic_has_two_cells_each_as_light_as_its_age() -> Non
 def test_a_cell_of_two_columns_has_one_row_and_a_cell_of_four_has_two() -> None:
     cells = Cells(np.array([1, 2, 3, 4]), np.zeros(4))
     for scale, high in ((1, 1), (2, 2), (4, 4)):
-        rows = field(cells, columns=2, scale=scale, letters=False)
+        rows = field(cells, columns=2, scale=scale)
         assert text(rows) == ["▀" * 2 * scale] * high
-    (upper, _), (lower, _) = field(cells, columns=2, scale=2, letters=False)
+    (upper, _), (lower, _) = field(cells, columns=2, scale=2)
     for segment, line in ((upper, 1), (lower, 3)):
         one, other = colours(segment)
         assert one == other, "both halves belong to one cell"

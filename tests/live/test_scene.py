@@ -9,8 +9,8 @@ from rich.segment import Segment
 from primordia.history.lines import Lines
 from primordia.law.world import World
 from primordia.live.forms import Ring, Room, Torus
-from primordia.live.paint import EMPTY, Cells, mosaic
-from primordia.live.scene import Grid, Stage, _labelled, cell_width
+from primordia.live.paint import Cells, mosaic
+from primordia.live.scene import Grid, Stage, _labelled, cells_of
 from tests.live.drawn import colours, text
 from tests.live.posed import law, posed
 
@@ -18,14 +18,6 @@ from tests.live.posed import law, posed
 def old(count: int) -> Cells:
     """Return old cells, each of its own line."""
     return Cells(np.arange(count), np.ones(count))
-
-
-def colour_room(width: int, height: int) -> Room:
-    return Room(width, height, letters=False)
-
-
-def letter_room(width: int, height: int) -> Room:
-    return Room(width, height, letters=True)
 
 
 # Forms.
@@ -45,44 +37,38 @@ def letter_room(width: int, height: int) -> Room:
 def test_a_cell_of_a_ring_is_as_wide_as_fits_and_at_most_eight_columns(
     cells: int, width: int, height: int, scale: int
 ) -> None:
-    assert Ring(cells).scale(colour_room(width, height)) == scale
+    assert Ring(cells).scale(Room(width, height)) == scale
     assert Ring(cells).least == (cells, 1)
 
 
 @pytest.mark.parametrize(
     ("room", "scale"),
-    [(colour_room(12, 4), 2), (colour_room(11, 9), 1), (colour_room(99, 5), 2), (colour_room(99, 6), 3),
-     (colour_room(999, 99), 16), (colour_room(5, 9), 0), (colour_room(9, 1), 0),
-     (letter_room(6, 4), 1), (letter_room(60, 40), 1), (letter_room(5, 9), 0), (letter_room(9, 3), 0)],
+    [(Room(12, 4), 2), (Room(11, 9), 1), (Room(99, 5), 2), (Room(99, 6), 3),
+     (Room(999, 99), 16), (Room(5, 9), 0), (Room(9, 1), 0)],
 )  # fmt: skip
 def test_a_cell_of_a_torus_is_a_square_of_half_rows(room: Room, scale: int) -> None:
-    assert Torus(4, 6, room.letters).scale(room) == scale
+    assert Torus(4, 6).scale(room) == scale
 
 
-def test_a_row_of_colours_has_two_rows_of_a_torus_and_a_row_of_letters_one() -> None:
-    assert [Torus(rows, 6, letters).least for rows, letters in ((4, False), (5, False), (5, True))] == [
-        (6, 2), (6, 3), (6, 5),
-    ]  # fmt: skip
+def test_a_row_of_characters_has_two_rows_of_a_torus() -> None:
+    assert [Torus(rows, 6).least for rows in (4, 5)] == [(6, 2), (6, 3)]
 
 
 def test_a_part_of_a_torus_is_its_first_rows_and_columns() -> None:
     cells = old(24)
-    whole, nothing = Torus(4, 6, letters=True).draw(cells, [], letter_room(9, 9))
-    assert (text(whole), nothing) == (["ABCDEF", "GHIJKL", "MNOPQR", "STUVWX"], "")
-    part, note = Torus(4, 6, letters=True).draw(cells, [], letter_room(5, 3))
-    assert text(part) == ["ABCDE", "GHIJK", "MNOPQ"]
-    assert note == "shown: 3 x 5 of 4 x 6 cells"
-    for width, height, shown in ((5, 9, "4 x 5"), (9, 3, "3 x 6")):
-        _, note = Torus(4, 6, letters=True).draw(cells, [], letter_room(width, height))
+    whole, nothing = Torus(4, 6).draw(cells, [], Room(9, 2))
+    assert (whole, nothing) == (mosaic(np.arange(24).reshape(4, 6) * 4 + 3), "")
+    for width, height, shown in ((5, 9, "4 x 5"), (9, 1, "2 x 6")):
+        _, note = Torus(4, 6).draw(cells, [], Room(width, height))
         assert note == f"shown: {shown} of 4 x 6 cells"
-    pixels, note = Torus(4, 6, letters=False).draw(cells, [], colour_room(5, 1))
+    pixels, note = Torus(4, 6).draw(cells, [], Room(5, 1))
     expected = mosaic(np.array([[0, 1, 2, 3, 4], [6, 7, 8, 9, 10]]) * 4 + 3)
     assert (pixels, note) == (expected, "shown: 2 x 5 of 4 x 6 cells")
 
 
 @pytest.mark.parametrize(("height", "rows"), [(2, 2), (4, 4), (9, 4)])
 def test_bars_have_at_most_four_rows(height: int, rows: int) -> None:
-    drawn, part = Ring(3).draw(old(3), [], colour_room(3, height))
+    drawn, part = Ring(3).draw(old(3), [], Room(3, height))
     assert text(drawn) == ["███"] * rows + [""] * (height - rows)
     assert part == ""
 
@@ -90,12 +76,10 @@ def test_bars_have_at_most_four_rows(height: int, rows: int) -> None:
 def test_the_past_of_a_ring_is_below_it_with_the_latest_moment_first() -> None:
     """Seven rows have four of bars, and room for six moments."""
     past = [np.array([4 * at, 4 * at + 3]) for at in range(8)]
-    drawn, _ = Ring(2).draw(old(2), past, colour_room(4, 7))
+    drawn, _ = Ring(2).draw(old(2), past, Room(4, 7))
     assert drawn[4:] == mosaic(np.stack(past[:6]).repeat(2, axis=1)), "cells are two columns wide"
-    drawn, _ = Ring(2).draw(old(2), past[:3], colour_room(4, 7))
+    drawn, _ = Ring(2).draw(old(2), past[:3], Room(4, 7))
     assert drawn[4:] == [*mosaic(np.stack(past[:3]).repeat(2, axis=1)), []]
-    letters, _ = Ring(2).draw(old(2), past, letter_room(4, 7))
-    assert text(letters) == ["█ █ "] * 4 + ["a b "]
 
 
 @pytest.mark.parametrize(
@@ -112,28 +96,8 @@ def test_the_past_of_a_ring_is_below_it_with_the_latest_moment_first() -> None:
 def test_many_cells_make_several_equal_skylines(
     cells: int, width: int, height: int, rows: list[str], part: str
 ) -> None:
-    drawn, note = Ring(cells).draw(old(cells), [np.zeros(cells)], colour_room(width, height))
+    drawn, note = Ring(cells).draw(old(cells), [np.zeros(cells)], Room(width, height))
     assert (text(drawn), note) == (rows, part)
-
-
-def test_letters_are_capitals_for_the_old_in_one_row_and_are_below_bars_in_more() -> None:
-    cells = Cells(np.array([0, 1, EMPTY]), np.array([1.0, 0.2, 0.0]))
-    assert text(Ring(3).draw(cells, [], letter_room(3, 1))[0]) == ["Ab·"]
-    assert text(Ring(3).draw(cells, [], letter_room(3, 2))[0]) == ["▇▂ ", "ab·"]
-
-
-@pytest.mark.parametrize(
-    ("form", "room", "note"),
-    [
-        (Ring(9), colour_room(9, 1), "height: age"),
-        (Ring(9), letter_room(9, 1), "capitals: old"),
-        (Ring(9), letter_room(9, 2), "height: age"),
-        (Torus(3, 3, letters=False), colour_room(9, 1), "light: age"),
-        (Torus(3, 3, letters=True), letter_room(9, 9), "capitals: old"),
-    ],
-)
-def test_a_legend_explains_how_age_is_drawn(form: Any, room: Room, note: str) -> None:
-    assert form.age(room) == note
 
 
 # Tiles.
@@ -143,17 +107,17 @@ def test_a_legend_explains_how_age_is_drawn(form: Any, room: Room, note: str) ->
     ("form", "worlds", "room", "grid"),
     [
         # Cells have 2 columns if three, four or five of these worlds are side by side.
-        (Torus(4, 4, letters=False), 6, colour_room(60, 12), Grid(3, 6, colour_room(16, 5), 1)),
-        (Ring(20), 4, colour_room(64, 4), Grid(1, 4, colour_room(60, 1), 0)),
-        (Ring(20), 4, colour_room(64, 3), Grid(2, 4, colour_room(28, 1), 0)),
-        (Ring(20), 4, colour_room(64, 12), Grid(1, 4, colour_room(60, 2), 1)),
-        (Ring(20), 1, colour_room(64, 12), Grid(1, 1, colour_room(60, 12), 0)),
+        (Torus(4, 4), 6, Room(60, 12), Grid(3, 6, Room(16, 5), 1)),
+        (Ring(20), 4, Room(64, 4), Grid(1, 4, Room(60, 1), 0)),
+        (Ring(20), 4, Room(64, 3), Grid(2, 4, Room(28, 1), 0)),
+        (Ring(20), 4, Room(64, 12), Grid(1, 4, Room(60, 2), 1)),
+        (Ring(20), 1, Room(64, 12), Grid(1, 1, Room(60, 12), 0)),
         # Where not all worlds fit, as many are shown as fit.
-        (Ring(200), 8, colour_room(80, 5), Grid(1, 5, colour_room(76, 1), 0)),
-        (Ring(200), 3, colour_room(80, 5), Grid(1, 3, colour_room(76, 1), 0)),
-        (Ring(30), 9, colour_room(70, 3), Grid(2, 6, colour_room(31, 1), 0)),
-        (Torus(64, 64, letters=False), 4, colour_room(80, 65), Grid(1, 1, colour_room(76, 65), 0)),
-        (Torus(64, 64, letters=False), 4, colour_room(80, 66), Grid(1, 2, colour_room(76, 32), 1)),
+        (Ring(200), 8, Room(80, 5), Grid(1, 5, Room(76, 1), 0)),
+        (Ring(200), 3, Room(80, 5), Grid(1, 3, Room(76, 1), 0)),
+        (Ring(30), 9, Room(70, 3), Grid(2, 6, Room(31, 1), 0)),
+        (Torus(64, 64), 4, Room(80, 65), Grid(1, 1, Room(76, 65), 0)),
+        (Torus(64, 64), 4, Room(80, 66), Grid(1, 2, Room(76, 32), 1)),
     ],
 )  # fmt: skip
 def test_tiles_are_those_with_the_largest_cells(
@@ -167,7 +131,7 @@ def test_tiles_side_by_side_are_equally_wide() -> None:
     drawn: list[Any] = [[Segment("ab")], [Segment("abcd"), Segment("e")], []]
 
     def widths(across: int) -> list[int]:
-        grid = Grid(across, 2, Room(6, 3, letters=False), 0)
+        grid = Grid(across, 2, Room(6, 3), 0)
         return [len(row) for row in text(_labelled(drawn, "7 ", " \u2713", grid))]
 
     assert widths(across=2) == [10, 10, 10]
@@ -185,21 +149,21 @@ def three(**more: Any) -> World:
 
 
 def test_each_world_has_its_seed_its_own_ages_and_its_own_mark() -> None:
-    """Organisms from age 9 on are capital letters, since log(10) is half of log(100)."""
-    world, room = three(saturated=[-1, 250, -1]), letter_room(40, 3)
+    """A bar of one row has seven heights; log(9) and log(11) are about half of log(100)."""
+    world, room = three(saturated=[-1, 250, -1]), Room(9, 3)
     scene = Stage().scene(law(4, 3), world, {}, None, room)
-    assert text(scene.rows) == [" 9 A·b·", "10 ···C ✓", "11 DE··"]
-    assert scene.legend == "capitals: old, letter: branch of the founder, ✓: saturated"
+    assert text(scene.rows) == [" 9 ▇·▄·", "10 ···▇ ✓", "11 ▄▄··"]
+    assert scene.legend == "height: age, colour: branch of the founder, ✓: saturated"
     assert scene.part == ""
     unmarked = Stage().scene(law(4, 3), three(), {}, None, room)
-    assert text(unmarked.rows) == [" 9 A·b·", "10 ···C", "11 DE··"]
-    assert unmarked.legend == "capitals: old, letter: branch of the founder"
+    assert text(unmarked.rows) == [" 9 ▇·▄·", "10 ···▇", "11 ▄▄··"]
+    assert unmarked.legend == "height: age, colour: branch of the founder"
 
 
 def test_worlds_that_do_not_fit_are_neither_drawn_nor_marked() -> None:
     world = three(saturated=[-1, -1, 0])
-    scene = Stage().scene(law(4, 3), world, {}, None, letter_room(12, 2))
-    assert text(scene.rows) == [" 9 A·b·", "10 ···C"]
+    scene = Stage().scene(law(4, 3), world, {}, None, Room(12, 2))
+    assert text(scene.rows) == [" 9 ▇·▄·", "10 ···▇"]
     assert scene.part == "shown: the first 2 of 3 worlds"
     assert "✓" not in scene.legend
 
@@ -207,21 +171,21 @@ def test_worlds_that_do_not_fit_are_neither_drawn_nor_marked() -> None:
 def test_the_note_names_worlds_and_cells_that_do_not_fit() -> None:
     """Two rows hold two worlds. A label takes four columns, so 16 of 20 columns are cells."""
     world = posed([[1] * 40] * 3, [[0] * 40] * 3, [10] * 3)
-    scene = Stage().scene(law(40, 3), world, {}, None, letter_room(20, 2))
+    scene = Stage().scene(law(40, 3), world, {}, None, Room(20, 2))
     assert scene.part == "shown: the first 2 of 3 worlds; shown: the first 16 of 40 cells"
-    scene = Stage().scene(law(40, 3), world, {}, None, letter_room(20, 3))
+    scene = Stage().scene(law(40, 3), world, {}, None, Room(20, 3))
     assert scene.part == "shown: the first 16 of 40 cells"
 
 
 def test_an_empty_row_is_below_each_tile_of_several_rows() -> None:
-    rows = text(Stage().scene(law(4, 3), three(), {}, None, colour_room(40, 12)).rows)
+    rows = text(Stage().scene(law(4, 3), three(), {}, None, Room(40, 12)).rows)
     assert [number for number, row in enumerate(rows) if not row] == [3, 7, 11]
     assert [row[:3] for row in rows[:3]] == [" 9 ", "   ", "   "]
 
 
 def test_one_world_alone_fills_the_room() -> None:
-    drawn = [Stage().scene(law(4, 3), three(), {}, alone, letter_room(4, 1)) for alone in range(3)]
-    assert [text(scene.rows) for scene in drawn] == [["A·b·"], ["···C"], ["DE··"]]
+    drawn = [Stage().scene(law(4, 3), three(), {}, alone, Room(4, 1)) for alone in range(3)]
+    assert [text(scene.rows) for scene in drawn] == [["▇·▄·"], ["···▇"], ["▄▄··"]]
 
 
 def test_cells_show_lines_of_descent_where_these_are_followed_and_branches_elsewhere() -> None:
@@ -230,24 +194,12 @@ def test_cells_show_lines_of_descent_where_these_are_followed_and_branches_elsew
     world = three(number=[[far, 0, 1, 0], [0, 0, 0, 7], [3, 4, 0, 0]])
     followed = {0: Lines([far, 1], 2), 1: Lines([7], 2)}
     followed[0].line_of = {far: 5, 1: 6}
-    room = letter_room(40, 3)
-    scene = Stage().scene(law(4, 3), world, followed, None, room)
-    assert text(scene.rows) == [" 9 F·g·", "10 ···H", "11 DE··"]
-    assert scene.legend == "capitals: old, letter: line of descent"
+    lines = [cells_of(law(4, 3), world, followed.get(each), each).line for each in range(3)]
+    assert np.stack(lines).tolist() == [[5, -1, 6, -1], [-1, -1, -1, 7], [3, 4, -1, -1]]
+    room = Room(40, 3)
+    assert Stage().scene(law(4, 3), world, followed, None, room).legend.endswith("line of descent")
     for alone, note in ((1, "line of descent"), (2, "branch of the founder")):
         assert Stage().scene(law(4, 3), world, followed, alone, room).legend.endswith(note)
-
-
-def test_the_width_of_a_cell_is_that_of_the_worlds_that_are_shown() -> None:
-    room, seeds = colour_room(64, 3), list(range(6))
-    assert cell_width(law(10), seeds, None, room) == 6
-    assert cell_width(law(10, 3), seeds, None, room) == 6, "60 columns for each of three rows"
-    assert cell_width(law(10, 3), seeds, 1, room) == 6
-    assert cell_width(law(10, 6), seeds, None, room) == 2, "two side by side have 28 columns"
-    assert [cell_width(law(10, 6), seeds, alone, room) for alone in (0, 5)] == [6, 6]
-    assert cell_width(law(40, 6), seeds, None, room) == 0, "not all worlds fit"
-    assert cell_width(law(10, 6), [999, *range(1000, 1005)], None, room) == 2
-    assert cell_width(law(10, 6), [10**11, *seeds[1:]], None, room) == 1, "labels have 15 columns"
 
 
 # The past.
@@ -259,7 +211,7 @@ def upper(scene: Any, row: int) -> list[tuple[int, ...]]:
 
 def test_a_moment_is_remembered_once_and_shown_below_the_present() -> None:
     """A ring of two cells: one organism, then the other, then both."""
-    stage, of, room = Stage(), law(2), colour_room(2, 6)
+    stage, of, room = Stage(), law(2), Room(2, 6)
 
     def at(tick: int, alive: list[int]) -> World:
         return posed([alive], [[tick, tick]], [tick], branch=[[1, 2]])
@@ -283,7 +235,7 @@ def test_the_latest_511_moments_before_the_present_are_kept() -> None:
 
 
 def test_each_world_has_its_own_past() -> None:
-    stage, of, room = Stage(), law(4, 3), colour_room(4, 5)
+    stage, of, room = Stage(), law(4, 3), Room(4, 5)
     for _ in range(2):
         stage.follow(of, three(), {}, 2)
     later = three()

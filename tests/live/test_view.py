@@ -163,16 +163,5 @@ def test_the_last_frame_has_neither_keys_nor_words() -> None:
     assert "died of" in "\n".join(rows)
 
 
-@pytest.mark.parametrize(
-    ("options", "letters"),
-    [({}, False), ({"color_system": "256"}, False), ({"color_system": "standard"}, True),
-     ({"color_system": None}, True), ({"no_color": True}, True)],
-)  # fmt: skip
-def test_letters_take_the_place_of_fewer_than_256_colours(
-    options: dict[str, Any], letters: bool
-) -> None:
-    assert view(**options)._letters == letters
-
-
 def test_a_view_limits_the_speed_only_if_asked() -> None:
     assert view()._pace.limit is None

@@ -5,7 +5,6 @@ from itertools import pairwise
 import pytest
 
 from primordia.law.world import Cause
-from primordia.live.ground import Medians
 from primordia.live.panel import KEYS as NAMED
 from primordia.live.panel import Outlook, numbers
 from primordia.live.words import KEYS, WORDS, pages
@@ -37,7 +36,7 @@ def test_every_key_that_is_named_is_explained() -> None:
 
 
 def test_every_number_and_every_cause_of_death_is_explained() -> None:
-    named = numbers(counted(), 8, Outlook(1.0, 9.0), 1, Medians(0.5, 0.5, 1.0))
+    named = numbers(counted(), 8, Outlook(1.0, 9.0), 1)
     assert {*named, *(cause.label for cause in Cause)} <= {*WORDS}
 
 

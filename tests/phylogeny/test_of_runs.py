@@ -109,7 +109,7 @@ def test_a_line_in_a_fork_with_another_future_has_the_changes_of_both(
     late = found.line.born > 200
     assert min(late.sum(), (~late).sum()) > 1
     made = [
-        (other if new else primordia.load(run)).rebuild(int(number))
+        (other if new else primordia.load(run)).organism(int(number)).genome()
         for number, new in zip(found.line.id, late, strict=True)
     ]
     assert found.size is not None

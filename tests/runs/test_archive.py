@@ -15,7 +15,7 @@ from primordia.history.foraging import foraging
 from primordia.history.info import info
 from primordia.history.rebuilding import rebuild_all
 from primordia.organism.reliving.relived import RelivedLife
-from primordia.runs import loop, record
+from primordia.runs import loop, recorder
 from primordia.runs.archive import Archive
 from primordia.runs.schema import TABLES
 from tests.commands import here
@@ -143,8 +143,8 @@ def test_an_opened_run_does_not_see_it_grow(tmp_path: Path) -> None:
 def test_some_columns_are_read_from_closed_and_open_segments(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(record, "SEGMENT_ROWS", 9)
-    monkeypatch.setattr(record.Recorder, "finish", lambda _: None)
+    monkeypatch.setattr(recorder, "SEGMENT_ROWS", 9)
+    monkeypatch.setattr(recorder.Recorder, "finish", lambda _: None)
     loop.start(config(SETTINGS), tmp_path / "run")
     run = Archive(tmp_path / "run")
     for name, columns in {"births": ("tick", "cause"), "metrics": ("world", "hazard")}.items():

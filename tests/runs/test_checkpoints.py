@@ -9,7 +9,7 @@ import pytest
 from primordia.errors import Trouble
 from primordia.runs import checkpoint, manifest
 from primordia.runs.manifest import Manifest, Progress, Seal, Segment
-from primordia.runs.record import Recorder
+from primordia.runs.recorder import Recorder
 from primordia.runs.schema import TABLES, Schema
 from primordia.settings.limits import Stop
 
@@ -89,7 +89,9 @@ def test_a_manifest_names_the_settings_and_the_code(run: Path) -> None:
 def test_faults_of_checkpoints_are_in_order_newest_first(run: Path, origin: bool) -> None:
     """A fork without a whole checkpoint begins with its origin; another run must be repeated."""
     if origin:
-        checkpoint.save_origin(run, {"number": np.array([7])}, Recorder(run, 1, SCHEMA), PROGRESS)
+        checkpoint.write(
+            run, run / "origin", {"number": np.array([7])}, Recorder(run, 1, SCHEMA), PROGRESS
+        )
         assert checkpoint.exists(run)
         assert number_in(checkpoint.origin(run)) == 7
     for number in range(2):
@@ -122,7 +124,7 @@ def test_files_later_than_a_checkpoint_are_removed(run: Path, which: str) -> Non
     """Earlier checkpoints stay, and so do the segments that the checkpoint names."""
     recorder = Recorder(run, 1, SCHEMA)
     seal = {"bytes": 0, "sha256": "0" * 64}
-    checkpoint.save_origin(run, {"a": np.zeros(1)}, recorder, PROGRESS)
+    checkpoint.write(run, run / "origin", {"a": np.zeros(1)}, recorder, PROGRESS)
     for number in range(2):
         recorder.tables[1].segments.append(Segment(name=f"{number:06d}.parquet", rows=0, **seal))
         save(run, number)

@@ -10,8 +10,10 @@ import pytest
 
 from primordia.errors import InputError
 from primordia.runs import opening
-from primordia.runs.arm import Arm, _Joined, _refuse_twice, _shifted, run_of
+from primordia.runs.archive import run_of
+from primordia.runs.arm import _refuse_twice
 from primordia.runs.opening import arm_paths, only, run_paths
+from primordia.runs.records import Records, _Joined, _shifted
 
 
 def begun(path: Path, *, checkpoint: str | None = "checkpoints/000000") -> Path:
@@ -81,7 +83,7 @@ def test_runs_of_an_arm_are_in_order_of_seeds_and_the_arm_has_a_name(
         "archive",
         lambda path: SimpleNamespace(config=SimpleNamespace(seed=seeds[path.name]), path=path),
     )
-    monkeypatch.setattr(opening, "Arm", lambda path, runs: (path, [run.path.name for run in runs]))
+    monkeypatch.setattr(opening, "arm", lambda path, runs: (path, [run.path.name for run in runs]))
     order = ["b", "c", "a"]
     assert opening.opened([tmp_path / "arm"]) == (tmp_path / "arm", order)
     assert opening.opened(paths) == (paths[0], order)
@@ -129,8 +131,8 @@ def test_arrays_of_unequal_runs_are_joined_world_by_world(which: Any, kept: list
 
 
 def test_an_arm_has_the_versions_and_the_damage_of_all_its_runs() -> None:
-    arm: Any = Arm.__new__(Arm)
-    arm.path, arm.runs, arm.firsts = Path("arm"), (*RUNS,), FIRSTS
+    arm: Any = Records.__new__(Records)
+    arm.path, arm._runs, arm.firsts = Path("arm"), (*RUNS,), FIRSTS
     assert arm.versions == {"jax": "1", "a": "2, none", "b": "none, 2", "c": "none, 2"}
     assert arm.damaged == ["a 1", "a 2", "b 1", "b 2", "c 1", "c 2"]
     assert arm.row_digests["births"][:, 1].tolist() == [0, 0, 2, 2, 2, 5]

@@ -15,7 +15,7 @@ import primordia
 from primordia import files
 from primordia.errors import InputError
 from primordia.history.info import info
-from primordia.runs import bundle, checkpoint, directory, loop, record
+from primordia.runs import bundle, checkpoint, directory, loop, recorder
 from primordia.runs.archive import Archive
 from primordia.runs.arrays import world_ticks
 from tests.disk import Disk, Instant
@@ -46,7 +46,7 @@ def digests(run: Path) -> list[str]:
 @pytest.fixture(scope="module")
 def small_segments() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(record, "SEGMENT_ROWS", 30)
+        patch.setattr(recorder, "SEGMENT_ROWS", 30)
         yield
 
 

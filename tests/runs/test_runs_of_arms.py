@@ -9,7 +9,7 @@ import pytest
 
 from primordia.brains.genomes import FOUNDERS
 from primordia.errors import InputError
-from primordia.runs.arm import Arm
+from primordia.runs.arm import arm
 from primordia.runs.description import Description
 from tests.worlds import MEADOW, config
 
@@ -57,10 +57,10 @@ def test_the_first_setting_in_which_runs_differ_is_named(
     runs = [run_of(Path("a"), *first), run_of(Path("b"), *first, seed=10)]
     runs.append(run_of(Path("c"), *last, seed=20))
     if differs is None:
-        assert Arm(Path("arm"), runs).runs == tuple(runs)
+        assert arm(Path("arm"), runs).runs == tuple(runs)
         return
     with pytest.raises(InputError) as raised:
-        Arm(Path("arm"), runs)
+        arm(Path("arm"), runs)
     says = f"c and a do not belong to one arm: they differ in {differs}"
     assert str(raised.value).startswith(says)
 
@@ -69,10 +69,10 @@ def test_forks_of_an_arm_begin_at_one_tick_but_may_have_different_sources() -> N
     of = {"run": "another", "tick": 9}
     runs = [run_of(Path(name), {"fork": each}, {}, seed)
             for name, each, seed in (("a", FORKED, 1), ("b", of, 2))]  # fmt: skip
-    assert Arm(Path("arm"), runs).runs == tuple(runs)
+    assert arm(Path("arm"), runs).runs == tuple(runs)
     later = run_of(Path("c"), {"fork": {"run": "source", "tick": 10}}, {}, 3)
     with pytest.raises(InputError, match=r"^c and a .* they differ in fork\.tick$"):
-        Arm(Path("arm"), [*runs, later])
+        arm(Path("arm"), [*runs, later])
 
 
 @pytest.mark.parametrize("same", [True, False])
@@ -85,18 +85,18 @@ def test_runs_of_an_arm_begin_with_the_same_genomes(same: bool, tmp_path: Path) 
         runs[-1].path.mkdir()
         (runs[-1].path / FOUNDERS).write_bytes(content)
     if same:
-        assert Arm(tmp_path, runs).config.seeds == 3
+        assert arm(tmp_path, runs).config.seeds == 3
         return
     says = f"{tmp_path / '2'} and {tmp_path / '0'} do not belong to one arm: they differ in genomes"
     with pytest.raises(InputError, match=f"^{says}$"):
-        Arm(tmp_path, runs)
+        arm(tmp_path, runs)
 
 
 def test_worlds_of_an_arm_are_counted_run_by_run() -> None:
     """The runs have different numbers of worlds."""
     runs = [run_of(Path(str(seed)), {"seeds": seeds}, {}, seed)
             for seed, seeds in ((10, 1), (20, 3), (30, 2), (40, 1))]  # fmt: skip
-    arm = Arm(Path("arm"), runs)
-    assert arm.firsts.tolist() == [0, 1, 4, 6]
-    assert arm.config.seeds == 7
-    np.testing.assert_array_equal(arm.world_seeds, [10, 20, 21, 22, 30, 31, 40])
+    joined = arm(Path("arm"), runs)
+    assert joined.firsts.tolist() == [0, 1, 4, 6]
+    assert joined.config.seeds == 7
+    np.testing.assert_array_equal(joined.world_seeds, [10, 20, 21, 22, 30, 31, 40])

@@ -11,9 +11,9 @@ import pytest
 from primordia.errors import InputError, Trouble
 from primordia.law.events import Events, Rows
 from primordia.law.world import BirthCause, Cause
-from primordia.runs import digest, record, segment
+from primordia.runs import digest, recorder, segment
 from primordia.runs.digest import digests, row_hashes
-from primordia.runs.record import Recorder
+from primordia.runs.recorder import Recorder
 from primordia.runs.schema import TABLES, Schema
 
 CELLS = 10
@@ -159,7 +159,7 @@ def test_no_table_has_two_columns_of_a_name(
 @pytest.fixture
 def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A run's folders, with segments of at most five rows."""
-    monkeypatch.setattr(record, "SEGMENT_ROWS", 5)
+    monkeypatch.setattr(recorder, "SEGMENT_ROWS", 5)
     for name in TABLES:
         (tmp_path / name).mkdir()
     return tmp_path

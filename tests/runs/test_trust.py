@@ -85,7 +85,7 @@ def test_looking_executes_no_code_of_a_run(folder: Path, monkeypatch: pytest.Mon
         assert done.returncode == 0, done.stderr
     opened = primordia.load(run)
     assert len(opened.lives()) == opened.table("births").num_rows > 8
-    assert len(opened.rebuild(0)) == Archive(run).layout.length
+    assert len(opened.organism(0).genome()) == Archive(run).layout.length
     (run / "config.toml").write_text(text)
     complains(here("info", run), 2, "stopp")
     assert not {"pond", "pond_depth"} & set(sys.modules)

@@ -149,7 +149,7 @@ def test_an_organism_that_lived_at_a_fork_is_in_its_origin(run: Path, tmp_path: 
     fork = primordia.load(run).fork(1_000, tmp_path / "fork").path
     oldest = int(np.argmax(Archive(fork).lives.lifespan))
     number, cell = Archive(fork).lives.id[oldest], Archive(fork).lives.cell[oldest]
-    assert len(primordia.load(fork).rebuild(int(number)))
+    assert len(primordia.load(fork).organism(int(number)).genome())
 
     def change(arrays: Arrays) -> None:
         arrays["world.organisms.alive"][cell] = False

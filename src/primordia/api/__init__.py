@@ -20,8 +20,7 @@ from primordia.comparison import comparison
 from primordia.errors import InputError, Trouble
 from primordia.experiments import campaign as campaigns
 from primordia.experiments.campaign import is_experiment
-from primordia.experiments.dispatch import live_all
-from primordia.experiments.places import place_for
+from primordia.experiments.dispatch import live_all, place_for
 from primordia.experiments.status import CampaignStatus
 from primordia.runs import code, loop, opening
 from primordia.runs.archive import Archive
@@ -45,7 +44,6 @@ def run(
     out: str | Path | None = None,
     settings: Mapping[str, Any] | None = None,
     *,
-    resume: bool = False,
     checkpoint_every: float = 60.0,
     device: str = "cpu",
     listen: Listener | None = None,
@@ -56,7 +54,6 @@ def run(
     Args:
         task: name of a built-in task, or a TOML file.
         out: directory of the new run; by default a new directory under `runs/`.
-        resume: if `out` already holds a run, go on with that run instead of raising InputError.
         checkpoint_every: seconds from one checkpoint to the next.
         device: `cpu` or `gpu`. All devices of this kind are used if the number of worlds allows
             it; see `device.sharing`.
@@ -72,13 +69,8 @@ def run(
     """
     with devices.selected(device):
         chosen = config.load(task, {**(settings or {}), **more})
-        if resume and out is None:
-            raise InputError(
-                "resume needs the directory of the run; give `out` (--out on the command line)"
-            )
         path = Path(out) if out is not None else fresh_directory(default_name(chosen))
-        live = loop.begin_or_resume if resume else loop.start
-        live(chosen, path, checkpoint_every=checkpoint_every, listen=listen)
+        loop.start(chosen, path, checkpoint_every=checkpoint_every, listen=listen)
     return Run(path)
 
 

@@ -4,11 +4,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from primordia.api import notebook
+from rich.console import Console
+
 from primordia.api.runs import Run
 from primordia.comparison.comparison import Comparison, compare
 from primordia.experiments import campaign
 from primordia.experiments.status import CampaignStatus
+from primordia.experiments.view import table
 from primordia.runs.records import Records
 from primordia.tracking.track import Sources
 
@@ -30,9 +32,11 @@ class Experiment(Run):
         """The arms by name, each as a `Run`; the reference comes first."""
         return {name: Run(folder) for name, folder in self._recorded().arms.items()}
 
-    def _repr_html_(self) -> str:
-        """Return a table of the arms, as notebooks show it."""
-        return notebook.of_experiment(self.status())
+    def _summary(self) -> str:
+        console = Console(highlight=False, color_system=None, width=100)
+        with console.capture() as captured:
+            console.print(table(self.status()))
+        return captured.get()
 
     def directories(self) -> tuple[Path, ...]:
         """Return the directories of the runs that have a checkpoint."""

@@ -11,13 +11,12 @@ import numpy as np
 import pyarrow as pa
 
 from primordia import device as devices
-from primordia.api import notebook
 from primordia.assays.heredity import Inherited, heredity
 from primordia.comparison.controls import FOUNDERS, Standing, evolved, unevolved
 from primordia.comparison.shadow import ORGANISMS, Shadow, shadow
 from primordia.errors import InputError, Trouble
 from primordia.history.info import info
-from primordia.history.rebuilding import rebuild
+from primordia.history.summary import summary
 from primordia.history.threshold import Threshold, threshold
 from primordia.organism.evaluation import Evaluation, evaluate
 from primordia.organism.export import export
@@ -29,6 +28,7 @@ from primordia.phylogeny.forks import whole_past
 from primordia.phylogeny.lines import WorldLines, lines
 from primordia.phylogeny.reduce import chosen
 from primordia.phylogeny.table import table
+from primordia.printable import printable
 from primordia.runs import bundle, directory, loop, opening
 from primordia.runs.archive import Archive
 from primordia.runs.fork import fork
@@ -54,12 +54,16 @@ class Run:
     def __post_init__(self) -> None:
         object.__setattr__(self, "path", Path(self.path))
 
-    def _repr_html_(self) -> str:
-        """Return a table of the worlds, as notebooks show it."""
+    def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
+        """Print what `primordia info` prints, as notebooks and IPython show it."""
         try:
-            return notebook.of_run(self.info())
+            text = self._summary()
         except (InputError, Trouble) as error:
-            return notebook.table(str(error), (), ())
+            text = str(error)
+        printer.text(printable(text))
+
+    def _summary(self) -> str:
+        return summary(self.info())
 
     def opened(self) -> Records:
         """Open the present records for reading."""
@@ -190,10 +194,6 @@ class Run:
             return table(part)
         formats.save(part, Path(out), say)
         return None
-
-    def rebuild(self, organism: int, world: int = 0) -> np.ndarray:
-        """Return an organism's genome, float32 (P,), rebuilt from the birth records alone."""
-        return rebuild(self.opened(), organism, world)
 
     def plot(
         self, out: str | Path | None = None, world: int = 0, figures: Sequence[str] = ()

@@ -31,7 +31,3 @@ def unbundle(file: Path, folder: Path) -> None:
 
     bundle.unbundle(file, folder)
     click.echo(folder)
-
-
-COMMANDS = (bundle, unbundle)
-"""The commands of this module."""

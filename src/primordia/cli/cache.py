@@ -1,4 +1,4 @@
-"""The cache of compiled code on disk, with which a second run of a task starts in seconds."""
+"""JAX's variables: the cache of compiled code on disk, with which a second run starts in seconds."""
 
 import hashlib
 import os
@@ -6,14 +6,29 @@ import platform
 import warnings
 from pathlib import Path
 
-import click
 from platformdirs import user_cache_path
+
+from primordia.errors import InputError
 
 CPUINFO = Path("/proc/cpuinfo")
 FEATURES = ("model name", "flags", "CPU implementer", "CPU part", "Features")
 """Lines of CPUINFO on which compiled code depends."""
 LARGEST = 2**30
 """Largest size of the cache in bytes; the least recently used code is removed first."""
+
+
+def check_variables() -> None:
+    """Import JAX if a variable of JAX is set; call this before JAX's variables are set for a command.
+
+    Raises:
+        InputError: JAX refuses the value of a variable.
+    """
+    if not any(name.startswith("JAX_") for name in os.environ):
+        return
+    try:
+        import jax  # noqa: F401
+    except ValueError as error:
+        raise InputError(f"JAX does not start: {error}; correct or unset this variable") from None
 
 
 def keep_compiled_code() -> None:
@@ -44,18 +59,3 @@ def processor(cpuinfo: Path = CPUINFO) -> str:
         about = [platform.processor()]
     text = "\n".join([platform.machine(), *about])
     return f"{platform.machine()}-{hashlib.sha256(text.encode()).hexdigest()[:16]}"
-
-
-def _compile_again(_: click.Context, __: click.Parameter, given: bool) -> None:
-    if given:
-        os.environ["JAX_ENABLE_COMPILATION_CACHE"] = "false"
-
-
-cache_option = click.option(
-    "--no-cache",
-    is_flag=True,
-    expose_value=False,
-    is_eager=True,  # before an option whose check imports JAX, which reads the variable at once
-    callback=_compile_again,
-    help="Neither read nor write the cache of compiled code.",
-)

@@ -3,6 +3,7 @@
 import errno
 import logging
 import sys
+from itertools import chain
 
 import click
 
@@ -24,20 +25,20 @@ from primordia.cli import (
     track,
 )
 from primordia.cli.assays import group as assays
-from primordia.cli.cache import keep_compiled_code
+from primordia.cli.cache import check_variables, keep_compiled_code
 from primordia.cli.streams import flush, report
-from primordia.cli.variables import check_variables
 from primordia.errors import InputError, Trouble
 
-GROUPS = {
-    "Evolve": ("run", "resume", "fork", "experiment", "tasks", "new", "check"),
-    "Look": ("info", "plot", "report", "watch", "replay", "film"),
-    "Compare": ("compare", "evaluate", "shadow", "assay"),
-    "Descent": ("ancestors", "lineages", "phylogeny"),
-    "Share": ("bundle", "unbundle", "export", "import", "track"),
-    "Trust": ("verify", "relive", "doctor"),
-}
-"""Names of all commands, by what a user wants to do, in the order of the work."""
+GROUPS: dict[str, tuple[click.Command, ...]] = {
+    "Evolve": (evolve.run, evolve.resume, evolve.fork, experiment.experiment, inspect.tasks,
+               environments.new, environments.check),
+    "Look": (inspect.info, inspect.plot, page.report, page.watch, inspect.replay, film.film),
+    "Compare": (inspect.compare, evaluate.evaluate, shadow.shadow, assays.assay),
+    "Descent": (descent.ancestors, descent.lineages, phylogeny.phylogeny),
+    "Share": (bundle.bundle, bundle.unbundle, inspect.export, inspect.import_, track.track),
+    "Trust": (inspect.verify, relive.relive, doctor.doctor),
+}  # fmt: skip
+"""All commands, by what a user wants to do, in the order of the work."""
 WATCHED = ("run", "resume", "fork", "experiment", "watch")
 """Names of commands with a display of their own."""
 
@@ -52,10 +53,10 @@ class Commands(click.Group):
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the commands of each group under its heading."""
         column = max(map(len, self.commands)) + 3
-        for heading, names in GROUPS.items():
+        for heading, group in GROUPS.items():
             with formatter.section(heading):
-                rows = [(name, self.commands[name].get_short_help_str(limit=100)) for name in names]
-                formatter.write_dl(rows, col_spacing=column - max(map(len, names)))
+                rows = [(str(each.name), each.get_short_help_str(limit=100)) for each in group]
+                formatter.write_dl(rows, col_spacing=column - max(len(name) for name, _ in rows))
 
 
 @click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"]})
@@ -76,14 +77,8 @@ def commands(ctx: click.Context) -> None:
         ctx.with_resource(bar())
 
 
-PARTS = (
-    bundle, descent, doctor, environments, evaluate, evolve, experiment, film, inspect, page, phylogeny,
-    relive, shadow, track, assays,
-)  # fmt: skip
-made = {command.name: command for part in PARTS for command in part.COMMANDS}
-for names in GROUPS.values():
-    for name in names:
-        commands.add_command(made[name])
+for command in chain.from_iterable(GROUPS.values()):
+    commands.add_command(command)
 
 
 def execute() -> int:

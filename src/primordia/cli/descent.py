@@ -1,7 +1,6 @@
 """Commands on lines of descent: ancestors, lines."""
 
 import json
-from collections.abc import Callable
 from functools import partial
 from math import isnan
 from pathlib import Path
@@ -10,17 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from primordia import files
-from primordia.cli.assays.options import json_option, out_option
-from primordia.cli.cache import cache_option
+from primordia.cli.assays.options import json_option, out_option, save_figure
 from primordia.cli.flags import run_argument, trust_option
 from primordia.cli.streams import report
 from primordia.cli.table import show_table
 from primordia.errors import InputError
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from primordia.phylogeny.descent import Ancestors
     from primordia.phylogeny.lines import WorldLines
     from primordia.phylogeny.sweeps import Sweep
@@ -37,7 +32,6 @@ ROWS, LINES = 20, 10
 )
 @out_option
 @trust_option
-@cache_option
 @json_option
 def ancestors(
     run: Path, organism: int | None, world: int | None, out: Path | None, trust: bool, as_json: bool
@@ -57,7 +51,7 @@ def ancestors(
     if out is not None:
         from primordia.figures import descent
 
-        _draw(partial(descent.draw, found), out, "ancestors", as_json)
+        save_figure(partial(descent.draw, found), out, "ancestors", as_json)
 
 
 @click.command(short_help="Measure lines of descent: selection and drift, sweeps, diversity.")
@@ -67,7 +61,6 @@ def ancestors(
     "--at", type=int, metavar="TICK", help="Tick at which the lines are founded [see above]."
 )
 @out_option
-@cache_option
 @json_option
 def lineages(run: Path, world: str, at: int | None, out: Path | None, as_json: bool) -> None:
     """Measure how lines of descent replace each other, and compare them with neutral shadows.
@@ -89,7 +82,7 @@ def lineages(run: Path, world: str, at: int | None, out: Path | None, as_json: b
         from primordia.figures import lines as figure
 
         for each in found:
-            _draw(partial(figure.draw, each), out, f"lines-{each.world}", as_json)
+            save_figure(partial(figure.draw, each), out, f"lines-{each.world}", as_json)
 
 
 def _world(text: str) -> int | None:
@@ -212,22 +205,9 @@ def _sweeps_text(sweeps: "list[Sweep]") -> str:
     return f"{text}."
 
 
-def _draw(draw: "Callable[[], Figure]", folder: Path, name: str, as_json: bool) -> None:
-    from primordia.figures import style
-
-    files.make_folder(folder)
-    with style.applied():
-        pictures = style.save(draw(), folder / name)
-    click.echo(f"Figure: {' and '.join(map(str, pictures))}", err=as_json)
-
-
 def _number(value: float | None, form: str) -> str:
     return "-" if value is None or isnan(value) else f"{value:{form}}"
 
 
 def _count(value: int | None) -> str:
     return "-" if value is None else f"{value:,}"
-
-
-COMMANDS = (ancestors, lineages)
-"""The commands of this module."""

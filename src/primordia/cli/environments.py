@@ -68,6 +68,3 @@ def _broken_contract(env: str) -> list[str]:
     except ContractError as error:
         return [str(error)]
     return []
-
-
-COMMANDS = (new, check)

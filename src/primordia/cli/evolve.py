@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from primordia import interrupts
-from primordia.cli.cache import cache_option
 from primordia.cli.flags import (
     SettingsCommand,
     checkpoint_option,
@@ -41,10 +40,8 @@ if TYPE_CHECKING:
     help="Start from the genomes in a file (`primordia export`); may be repeated.",
 )
 @limit_options
-@click.option("--resume", is_flag=True, help="If --out holds a run, go on with this run.")
 @checkpoint_option
 @device_option
-@cache_option
 @speed_option
 @quiet_option
 @click.pass_obj
@@ -88,7 +85,6 @@ def run(
 @limit_options
 @checkpoint_option
 @recorded_device_option
-@cache_option
 @click.option("--inexact", is_flag=True, help="Go on even if versions, code or machine differ.")
 @trust_option
 @speed_option
@@ -119,7 +115,6 @@ def resume(run: Path, quiet: bool, speed: float | None, trust: bool, **options: 
 @limit_options
 @checkpoint_option
 @recorded_device_option
-@cache_option
 @trust_option
 @speed_option
 @quiet_option
@@ -188,6 +183,3 @@ def _while_shown(listen: "Listener", stopped: Callable[[], str]) -> "Listener":
             raise Trouble(f"the output cannot be written: {error.strerror}. {stopped()}") from None
 
     return show
-
-
-COMMANDS = (run, resume, fork)

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from primordia import cores
-from primordia.cli.cache import cache_option
 from primordia.cli.flags import checkpoint_option, device_option, quiet_option, trust_option
 from primordia.cli.paths import OutputPath, PathType
 from primordia.cli.streams import report
@@ -17,8 +16,7 @@ from primordia.errors import InputError
 if TYPE_CHECKING:
     from primordia.experiments.campaign import Campaign
     from primordia.experiments.dispatch import Result
-    from primordia.experiments.ending import Ending
-    from primordia.experiments.plan import Job
+    from primordia.experiments.plan import Ending, Job
     from primordia.experiments.status import CampaignStatus
 
 
@@ -46,7 +44,6 @@ if TYPE_CHECKING:
 @checkpoint_option
 @device_option
 @trust_option
-@cache_option
 @quiet_option
 def experiment(
     file: Path,
@@ -98,7 +95,7 @@ def show_status(status: "CampaignStatus") -> None:
     """Print the status of an experiment."""
     from rich.console import Console
 
-    from primordia.cli.campaign_view import table
+    from primordia.experiments.view import table
 
     Console(highlight=False, color_system=None).print(table(status))
 
@@ -128,9 +125,8 @@ def _live_all(
     quiet: bool,
     **options: Any,
 ) -> None:
-    from primordia.cli.campaign_view import watching
-    from primordia.experiments.dispatch import live_all
-    from primordia.experiments.places import place_for
+    from primordia.experiments.dispatch import live_all, place_for
+    from primordia.experiments.view import watching
 
     left = chosen.left(only)
     if left:
@@ -168,6 +164,3 @@ def _end_unless_done(chosen: "Campaign", result: "Result") -> None:
 
 def _jobs(count: int) -> str:
     return "1 job" if count == 1 else f"{count:,} jobs"
-
-
-COMMANDS = (experiment,)

@@ -5,7 +5,6 @@ from typing import Any
 
 import click
 
-from primordia.cli.cache import cache_option
 from primordia.cli.flags import recorded_device_option, run_argument, trust_option, video_option
 
 
@@ -29,7 +28,6 @@ from primordia.cli.flags import recorded_device_option, run_argument, trust_opti
 )
 @recorded_device_option
 @trust_option
-@cache_option
 def film(run: Path, trust: bool, begin: int | None, end: int | None, **chosen: Any) -> None:
     """Film a world: births and deaths in all its cells, and beside them one organism's life.
 
@@ -41,7 +39,3 @@ def film(run: Path, trust: bool, begin: int | None, end: int | None, **chosen: A
     from primordia.api import load
 
     click.echo(load(run, trust).film(ticks=(begin, end), **chosen))
-
-
-COMMANDS = (film,)
-"""The commands of this module."""

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from primordia import files
-from primordia.cli.cache import cache_option
 from primordia.cli.experiment import show_status
 from primordia.cli.flags import (
     recorded_device_option,
@@ -76,7 +75,6 @@ def plot(runs: tuple[Path, ...], out: Path | None, world: int, figures: tuple[st
 @video_option
 @recorded_device_option
 @trust_option
-@cache_option
 def replay(
     run: Path,
     beside: tuple[int, ...],
@@ -102,7 +100,6 @@ def replay(
 )
 @click.option("--world", type=int, default=0, help="The organisms' world [0].")
 @trust_option
-@cache_option
 @click.argument("file", type=OutputPath())
 def export(run: Path, organisms: tuple[int, ...], world: int, trust: bool, file: Path) -> None:
     """Write genomes to a safetensors FILE, which `primordia run --ancestor` takes.
@@ -149,7 +146,6 @@ def chosen_organism(run: Path, organism: int | None, world: int | None, trust: b
 @run_argument
 @recorded_device_option
 @trust_option
-@cache_option
 def verify(run: Path, trust: bool) -> None:
     """Repeat a run from its beginning and compare every birth, death and genome with its records."""
     from primordia.api import load
@@ -203,6 +199,3 @@ def compare(runs: tuple[str, ...], out: Path, as_json: bool, **horizons: int | N
     pictures = save(compared, out)
     if not as_json:
         click.echo(f"Figure: {' and '.join(map(str, pictures))}")
-
-
-COMMANDS = (info, plot, replay, compare, export, import_, verify, tasks)

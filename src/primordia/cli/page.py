@@ -5,7 +5,6 @@ from pathlib import Path
 import click
 
 from primordia import interrupts
-from primordia.cli.cache import cache_option
 from primordia.cli.flags import run_argument, runs_argument, trust_option
 from primordia.cli.paths import OutputPath
 
@@ -14,7 +13,6 @@ from primordia.cli.paths import OutputPath
 @runs_argument
 @click.option("--out", type=OutputPath(), help="File to write: .html [RUN/report.html].")
 @trust_option
-@cache_option
 def report(runs: tuple[Path, ...], out: Path | None, trust: bool) -> None:
     """Write one HTML file about a run, several runs as one arm, or an experiment.
 
@@ -48,6 +46,3 @@ def watch(run: Path, port: int | None) -> None:
         load(run).watch(
             port, lambda address: click.echo(f"{address} shows {run}; Ctrl-C ends this command")
         )
-
-
-COMMANDS = (report, watch)

@@ -38,6 +38,3 @@ def phylogeny(run: Path, organism: int | None, out: Path, **choice: Any) -> None
 
     load(run).phylogeny(organism, out=out, say=report, **choice)
     click.echo(out)
-
-
-COMMANDS = (phylogeny,)

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import click
 
-from primordia.cli.cache import cache_option
 from primordia.cli.flags import recorded_device_option, run_argument, trust_option
 from primordia.cli.paths import OutputPath
 from primordia.cli.table import show_table
@@ -41,7 +40,6 @@ if TYPE_CHECKING:
 )
 @recorded_device_option
 @trust_option
-@cache_option
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 def relive(
     run: Path,
@@ -98,7 +96,3 @@ def _text(value: object) -> str:
     if value is None:
         return "-"
     return value if isinstance(value, str) else f"{value:,.10g}"
-
-
-COMMANDS = (relive,)
-"""The commands of this module."""

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import click
 
-from primordia.cli.cache import cache_option
 from primordia.cli.flags import recorded_device_option, runs_argument, trust_option
 from primordia.cli.numbers import COUNT, TICKS
 
@@ -26,7 +25,6 @@ if TYPE_CHECKING:
 @click.option("--ticks", type=TICKS, help="Cut lives at this age [the task's saturation_ticks].")
 @recorded_device_option
 @trust_option
-@cache_option
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 def shadow(
     runs: tuple[Path, ...], organisms: int, ticks: int | None, trust: bool, as_json: bool
@@ -73,7 +71,3 @@ def shadow_text(found: "Shadow") -> str:
             f"in the median world originals live {found.ratio:.2f} times as long{bounds}",
         ]
     )
-
-
-COMMANDS = (shadow,)
-"""The commands of this module."""

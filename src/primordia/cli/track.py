@@ -64,6 +64,3 @@ def _how_to_look(tensorboard: Path | None, wandb: Path | None) -> list[str]:
     return [
         f"Look at the metrics with: {way.format(folder)}" for way, folder in ways.items() if folder
     ]
-
-
-COMMANDS = (track,)

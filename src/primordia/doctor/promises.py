@@ -163,7 +163,7 @@ def _killed(alone: list[str]) -> str:
 
 def _process(run: Path, *flags: str, **variables: str) -> subprocess.Popen[str]:
     """Begin the run of the world in a process of its own, which compiles for itself."""
-    command = [sys.executable, "-m", "primordia", "run", TASK, "--no-cache", "--quiet", *flags]
+    command = [sys.executable, "-m", "primordia", "run", TASK, "--quiet", *flags]
     settings = [
         "--seed",
         f"{SEED}",
@@ -176,7 +176,7 @@ def _process(run: Path, *flags: str, **variables: str) -> subprocess.Popen[str]:
     ]
     return subprocess.Popen(
         [*command, *settings, "--out", str(run)],
-        env=os.environ | variables,
+        env=os.environ | {"JAX_ENABLE_COMPILATION_CACHE": "false"} | variables,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
         text=True,

@@ -5,11 +5,14 @@ from collections import Counter
 from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Protocol
 
-from primordia import interrupts
-from primordia.experiments.ending import Ending
-from primordia.experiments.plan import Job
+from primordia import cores, interrupts
+from primordia.errors import InputError
+from primordia.experiments.here import Here
+from primordia.experiments.on_ray import OnRay
+from primordia.experiments.plan import Ending, Job
 
 ATTEMPTS = 3
 """Number of times that a job is tried."""
@@ -25,6 +28,40 @@ class Place(Protocol):
 
     def stop(self) -> None:
         """Stop all jobs, each after a checkpoint if that is possible, and release everything."""
+
+
+def place_for(
+    out: Path,
+    left: int,
+    jobs: int | None,
+    ray: str | None,
+    checkpoint_every: float = 60.0,
+    device: str = "cpu",
+) -> Place:
+    """Return a place for jobs.
+
+    Args:
+        out: the experiment's directory.
+        left: number of jobs still to run.
+        jobs: number of jobs that run at once on this machine; None: one for each core, or a single
+            job on `gpu`, where each job takes all GPUs.
+        ray: address of a Ray cluster; "": this machine's cluster, or a new cluster; None: the jobs
+            run without a cluster.
+        checkpoint_every: seconds from one checkpoint to the next.
+        device: the device that computes the jobs, `cpu` or `gpu`.
+
+    Raises:
+        InputError: the cluster cannot be used.
+    """
+    if ray is None:
+        at_a_time = jobs or (cores.count() if device == "cpu" else 1)
+        return Here(out, min(at_a_time, left), checkpoint_every, device)
+    if jobs is not None:
+        raise InputError(
+            "--jobs is for jobs on this machine; with --ray each core of the cluster runs a job, so"
+            " leave out --jobs"
+        )
+    return OnRay(out, checkpoint_every, device, ray or None)
 
 
 @dataclass

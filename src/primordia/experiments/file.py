@@ -18,7 +18,6 @@ fork.
 """
 
 import os
-from collections import Counter
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -29,7 +28,7 @@ from primordia import config
 from primordia.config import Config
 from primordia.errors import InputError
 from primordia.experiments import plan as plans
-from primordia.experiments.plan import RESERVED, ArmPlan, Fork, Plan, Source
+from primordia.experiments.plan import ArmPlan, Fork, Plan, Source
 from primordia.runs import opening
 from primordia.runs.directory import read_config
 from primordia.settings.base import UNREACHED, Settings
@@ -44,8 +43,6 @@ from primordia.settings.tables import (
     values_of,
 )
 
-OWN = ("question", "arms", "jobs", "fork")
-"""Keys of an experiment's file that are not settings of a run."""
 BY_TENS = 10
 """Number of worlds of a job with a habitat in JAX, where the worlds of a run share each compiled
 call. With a habitat on the host, simulators take nearly all of the time, so a job has one
@@ -59,6 +56,15 @@ class _Jobs(Settings):
 class _ForkOf(Settings):
     of: str = Field(min_length=1)
     at: int = Field(ge=1, lt=UNREACHED)
+
+
+class _Own(Settings):
+    """The keys of an experiment's file that are not settings of a run."""
+
+    question: str = ""
+    arms: list[dict[str, Any]] = Field(min_length=1)
+    jobs: _Jobs = _Jobs()
+    fork: _ForkOf | None = None
 
 
 def read(file: Path, out: Path, forks: tuple[Path, ...] = ()) -> Plan:
@@ -75,58 +81,35 @@ def read(file: Path, out: Path, forks: tuple[Path, ...] = ()) -> Plan:
     if (here := file.resolve()) in forks:
         raise InputError(f"{file} is a fork of itself, directly or through other experiments")
     values = from_toml(file)
-    own = {name: values.pop(name) for name in OWN if name in values}
+    given = {name: values.pop(name) for name in _Own.model_fields if name in values}
     _refuse_unknown(values, file)
-    question, arms = own.get("question", ""), own.get("arms")
-    if not isinstance(question, str):
-        raise InputError(f"{file}: question must be a text in quotes")
-    if not (isinstance(arms, list) and arms and all(isinstance(arm, dict) for arm in arms)):
-        raise InputError(f"{file}: an experiment needs one or more arms, each a table [[arms]]")
-    jobs, fork = (
-        _table(own, name, kind, file) for name, kind in (("jobs", _Jobs), ("fork", _ForkOf))
-    )
-    sources: Fork | None = None
+    try:
+        own = _Own.model_validate(given)
+    except ValidationError as error:
+        raise InputError(f"{file}: {first_fault(error, _Own)}") from None
+    fork, sources = own.fork, None
     if fork is not None:
         base, sources = _origin(fork, file, out, (*forks, here))
-        if {"task", "seeds", "cells"} & {*values, *(name for arm in arms for name in arm)}:
+        if {"task", "seeds", "cells"} & {*values, *(name for arm in own.arms for name in arm)}:
             raise InputError(
                 f"{file}: a fork takes task, seeds and cells from {fork.of}; remove these settings"
             )
         values = merged(base, values)
     elif "task" not in values:
         raise InputError(f"{file}: `task` is missing; set it to the name of a task, or a file")
-    chosen = [_arm(values, arm, file, fork is not None) for arm in arms]
-    names = Counter(arm.name.casefold() for arm in chosen)  # some file systems ignore case
-    if twice := [name for name, count in names.items() if count > 1 or name in RESERVED]:
-        raise InputError(
-            f"{file}: {twice[0]!r} cannot name an arm, or names two arms; choose another name"
-        )
-    worlds = (jobs and jobs.worlds) or _recorded_worlds(out) or _default_worlds(chosen[0].config)
-    plan = Plan(question=question, worlds=worlds, fork=sources, arms=tuple(chosen))
-    if (count := len(plan.jobs())) > plans.LARGEST:
-        raise InputError(
-            f"{file}: {count:,} jobs are more than {plans.LARGEST:,}; raise jobs.worlds"
-        )
-    return plan
+    chosen = [_arm(values, arm, file, fork is not None) for arm in own.arms]
+    worlds = own.jobs.worlds or _recorded_worlds(out) or _default_worlds(chosen[0].config)
+    try:
+        return Plan(question=own.question, worlds=worlds, fork=sources, arms=tuple(chosen))
+    except ValidationError as error:
+        raise InputError(f"{file}: {first_fault(error, Plan)}") from None
 
 
 def _refuse_unknown(values: dict[str, Any], file: Path) -> None:
-    known = [*OWN, *Config.model_fields]
+    known = [*_Own.model_fields, *Config.model_fields]
     for name in values:
         if name not in known or name == "fork":
             raise InputError(f"{file}: there is no setting {name!r}{did_you_mean(name, known)}")
-
-
-def _table(own: dict[str, Any], name: str, kind: type[Settings], file: Path) -> Any:
-    """Return one of the file's own tables, checked; None if it is missing."""
-    if name not in own:
-        return None
-    if not isinstance(own[name], dict):
-        raise InputError(f"{file}: {name} must be a table [{name}]")
-    try:
-        return kind.model_validate(own[name])
-    except ValidationError as error:
-        raise InputError(f"{file}: {name}: {first_fault(error, kind)}") from None
 
 
 def _arm(shared: dict[str, Any], own: dict[str, Any], file: Path, complete: bool) -> ArmPlan:

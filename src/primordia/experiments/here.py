@@ -10,9 +10,8 @@ from contextlib import suppress
 from pathlib import Path
 
 from primordia import cores, files
-from primordia.experiments.ending import Ending
 from primordia.experiments.job import note_failure
-from primordia.experiments.plan import LOG, Job
+from primordia.experiments.plan import LOG, Ending, Job
 
 PATIENCE = 15.0
 """Seconds that a process has for a checkpoint when the process must stop."""

@@ -10,9 +10,8 @@ from primordia import device as devices
 from primordia import files
 from primordia.config import Config
 from primordia.errors import InputError, InUseError, Trouble
-from primordia.experiments.ending import Ending
 from primordia.experiments.ledger import Entry, Ledger, WorldCounts
-from primordia.experiments.plan import Job, Plan
+from primordia.experiments.plan import Ending, Job, Plan
 from primordia.history.info import info
 from primordia.live.census import Census, Speed
 from primordia.runs import code, directory, loop

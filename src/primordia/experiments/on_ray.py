@@ -17,8 +17,7 @@ from typing import Any
 
 from primordia import cores
 from primordia.errors import InputError
-from primordia.experiments.ending import Ending
-from primordia.experiments.plan import Job
+from primordia.experiments.plan import Ending, Job
 
 PATIENCE = 30.0
 """Seconds that jobs have for their checkpoints when they must stop."""

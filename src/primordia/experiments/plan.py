@@ -6,14 +6,15 @@ OUT/experiment.toml      the plan, written once
 """
 
 import os
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import chain, zip_longest
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal, NamedTuple, Self
 
 import tomli_w
-from pydantic import Field, ValidationError
+from pydantic import Field, ValidationError, model_validator
 
 from primordia import files
 from primordia.config import Config, parsed
@@ -74,6 +75,18 @@ class Job:
     """the run that the job forks, relative to the directory of the experiment"""
 
 
+class Ending(NamedTuple):
+    """The outcome of a job."""
+
+    job: int
+    state: Literal["done", "failed", "elsewhere", "stopped"]
+    """elsewhere: another process runs the job; stopped: a signal came, and the job can go on"""
+    error: str | None = None
+    """the error in one line, if the job failed"""
+    again: bool = True
+    """whether another try may end otherwise; a request that cannot be carried out never does"""
+
+
 class Plan(Settings):
     """A complete experiment."""
 
@@ -82,6 +95,29 @@ class Plan(Settings):
     """number of worlds of a job"""
     fork: Fork | None = None
     arms: tuple[ArmPlan, ...] = Field(min_length=1, strict=False)
+
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        names = Counter(arm.name.casefold() for arm in self.arms)  # some file systems ignore case
+        for name, count in names.items():
+            if count > 1 or name in RESERVED:
+                raise ValueError(
+                    f"{name!r} cannot name an arm, or names two arms; choose another name"
+                )
+        sources, jobs = self.fork.sources if self.fork else (), 0
+        worlds = sum(source.worlds for source in sources)
+        for arm in self.arms:
+            seeds = arm.settings.get("seeds")
+            if type(seeds) is not int or not 1 <= seeds <= 2**16:
+                raise ValueError(f"seeds of arm {arm.name} must be a whole number from 1 to 65536")
+            if sources and seeds != worlds:
+                raise ValueError(
+                    f"arm {arm.name} has {seeds} worlds, and the runs that it forks have {worlds}"
+                )
+            jobs += len(sources) or -(-seeds // self.worlds)
+        if jobs > LARGEST:
+            raise ValueError(f"{jobs:,} jobs are more than {LARGEST:,}; raise jobs.worlds")
+        return self
 
     def arm(self, name: str) -> ArmPlan:
         """Return the arm with a name; raise InputError if there is none."""
@@ -124,29 +160,9 @@ def recorded(out: Path) -> Plan:
     """
     file = out / EXPERIMENT
     try:
-        plan = Plan.model_validate(from_toml(file))
+        return Plan.model_validate(from_toml(file))
     except ValidationError as error:
         raise InputError(f"{file} is damaged: {first_fault(error, Plan)}") from None
-    if fault := _fault(plan):
-        raise InputError(f"{file} is damaged: {fault}")
-    return plan
-
-
-def _fault(plan: Plan) -> str:
-    """Return what is wrong with a plan whose values are each valid, or ""."""
-    names = [arm.name.casefold() for arm in plan.arms]  # some file systems ignore case
-    if len(set(names)) < len(names) or RESERVED & set(names):
-        return "two arms have one name, or an arm has a name that no arm can have"
-    sources, jobs = plan.fork.sources if plan.fork else (), 0
-    worlds = sum(source.worlds for source in sources)
-    for arm in plan.arms:
-        seeds = arm.settings.get("seeds")
-        if type(seeds) is not int or not 1 <= seeds <= 2**16:
-            return f"seeds of arm {arm.name} must be a whole number from 1 to 65536"
-        if sources and seeds != worlds:
-            return f"arm {arm.name} has {seeds} worlds, and the runs that it forks have {worlds}"
-        jobs += len(sources) or -(-seeds // plan.worlds)
-    return f"it has more than {LARGEST:,} jobs" if jobs > LARGEST else ""
 
 
 def check(plan: Plan, out: Path) -> None:

@@ -88,7 +88,7 @@ class Companion:
         below = [_fact(name, text, room.width) for name, text in facts.items() if text]
         below = below[: max(room.height - 1, 0)]
         left = room.height - 1 - len(below)
-        picture = self._picture(engine, body, Room(room.width, left, room.letters))
+        picture = self._picture(engine, body, Room(room.width, left))
         return [[Segment(fitting(titles, room.width), STRONG)], *picture, *below]
 
     def _caption(self, engine: Engine, body: Body) -> str:
@@ -103,7 +103,7 @@ class Companion:
         Emulators and many environments draw only bodies that are watched from birth. Other people
         wrote the code that draws, and an error in this code must not end the run.
         """
-        if room.letters or room.height < 4 or not self._draws:
+        if room.height < 4 or not self._draws:
             return []
         try:
             pixels = np.asarray(engine.habitat.picture(*body).convert("RGB"))

@@ -2,12 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
 from primordia.law.law import Law
-from primordia.live.paint import Cells, Row, field, mosaic, skyline, strip
+from primordia.live.paint import Cells, Row, field, mosaic, skyline
 
 TALLEST = 4
 """Largest number of rows of a skyline."""
@@ -16,16 +16,17 @@ WIDEST = 8
 
 
 class Room(NamedTuple):
-    """The room for a drawing, in characters, and whether letters take the place of colours."""
+    """The room for a drawing, in characters."""
 
     width: int
     height: int
-    letters: bool
-    """whether letters mark lines of descent: true if the terminal has too few colours"""
 
 
 class Form(Protocol):
     """The form in which a world of some cells is drawn."""
+
+    age: ClassVar[str]
+    """how age is shown"""
 
     @property
     def least(self) -> tuple[int, int]:
@@ -40,14 +41,11 @@ class Form(Protocol):
         `past` has the shades of the cells at earlier moments, the latest first.
         """
 
-    def age(self, room: Room) -> str:
-        """Say how age is shown in a room."""
 
-
-def form_of(law: Law, letters: bool) -> Form:
+def form_of(law: Law) -> Form:
     """Return the form of a law's worlds. In a well-mixed world the places have no meaning."""
     rows, columns = law.placement.shape(law.cells)
-    return Ring(law.cells) if rows == 1 else Torus(rows, columns, letters)
+    return Ring(law.cells) if rows == 1 else Torus(rows, columns)
 
 
 @dataclass(frozen=True)
@@ -55,6 +53,7 @@ class Ring:
     """Cells as a skyline. Many cells make several skylines. A single skyline has its past below it."""
 
     cells: int
+    age: ClassVar[str] = "height: age"
 
     @property
     def least(self) -> tuple[int, int]:
@@ -68,33 +67,24 @@ class Ring:
     def draw(self, cells: Cells, past: Sequence[np.ndarray], room: Room) -> tuple[list[Row], str]:
         """Draw the cells in order; see `Form`."""
         wide = max(self.scale(room), 1)
-        letter_rows = 1 if room.letters else 0
-        most = max(room.height // (1 + letter_rows), 1)
+        most = max(room.height, 1)
         count = min(-(-self.cells * wide // (room.width // wide * wide)), most)
         across = min(-(-self.cells // count), room.width // wide)
         shown = min(across * count, self.cells)
         gap = 1 if count > 1 else 0
-        tall = min(max(room.height // count - gap - letter_rows, 1), TALLEST)
-        with_gaps = count > 1 and count * (tall + letter_rows + 1) - 1 <= room.height
+        tall = min(max(room.height // count - gap, 1), TALLEST)
+        with_gaps = count > 1 and count * (tall + 1) - 1 <= room.height
         rows: list[Row] = []
         for at in range(0, shown, across):
             if with_gaps and rows:
                 rows.append([])
-            part = cells.take(slice(at, min(at + across, shown)))
-            if room.letters and room.height == 1:
-                rows.append(strip(part, letters=True))
-            else:
-                rows += skyline(part, wide, tall, room.letters)
+            rows += skyline(cells.take(slice(at, min(at + across, shown))), wide, tall)
         left = room.height - len(rows)
-        if count == 1 and not room.letters:
+        if count == 1:
             earlier = [moment[:shown].repeat(wide) for moment in past[: 2 * left]]
             drawn = mosaic(np.stack(earlier)) if earlier else []
             rows += [*drawn, *[[]] * (left - len(drawn))]
         return rows, part_of(shown, self.cells)
-
-    def age(self, room: Room) -> str:
-        """Say how age is shown in a room; see `Form`."""
-        return "capitals: old" if room.letters and room.height == 1 else "height: age"
 
 
 @dataclass(frozen=True)
@@ -103,34 +93,29 @@ class Torus:
 
     rows: int
     columns: int
-    letters: bool
+    age: ClassVar[str] = "light: age"
 
     @property
     def least(self) -> tuple[int, int]:
-        """With letters, a character for each cell; in colours, one for two cells."""
-        return self.columns, self.rows if self.letters else -(-self.rows // 2)
+        """A character for two cells, one above the other."""
+        return self.columns, -(-self.rows // 2)
 
     def scale(self, room: Room) -> int:
         """Return the width of a cell, in columns; see `Form`."""
-        across, high = room.width // self.columns, room.height // self.rows
-        if self.letters:
-            return min(across, high, 1)
-        return min(across, 2 * room.height // self.rows, 2 * WIDEST)
+        return min(room.width // self.columns, 2 * room.height // self.rows, 2 * WIDEST)
 
     def draw(self, cells: Cells, past: Sequence[np.ndarray], room: Room) -> tuple[list[Row], str]:
         """Draw the cells in their places; see `Form`."""
         scale = max(self.scale(room), 1)
-        pixels = room.height if self.letters else 2 * room.height
-        high, across = min(self.rows, pixels // scale), min(self.columns, room.width // scale)
+        high, across = (
+            min(self.rows, 2 * room.height // scale),
+            min(self.columns, room.width // scale),
+        )
         index = np.arange(high)[:, None] * self.columns + np.arange(across)
-        drawn = field(cells.take(index.ravel()), across, scale, self.letters)
+        drawn = field(cells.take(index.ravel()), across, scale)
         if high * across == self.rows * self.columns:
             return drawn, ""
         return drawn, f"shown: {high:,} x {across:,} of {self.rows:,} x {self.columns:,} cells"
-
-    def age(self, room: Room) -> str:
-        """Say how age is shown in a room; see `Form`."""
-        return "capitals: old" if room.letters else "light: age"
 
 
 def part_of(shown: int, count: int, what: str = "cells") -> str:

@@ -1,4 +1,4 @@
-"""Cells as characters: colour or letter shows the line of descent; height or light shows the age."""
+"""Cells as characters: colour shows the line of descent; height or light shows the age."""
 
 import colorsys
 from collections.abc import Callable, Iterable
@@ -22,7 +22,6 @@ EIGHTHS = " ▁▂▃▄▅▆▇█"
 FAINT = Style(color="grey50")
 GROUND = (45, 45, 45)
 """Colour of empty cells on a torus: red, green and blue."""
-LETTERS = "abcdefghijklmnopqrstuvwxyz"
 
 
 @dataclass(frozen=True)
@@ -44,11 +43,8 @@ class Cells:
         return Cells(self.line[index], self.age[index])
 
 
-def skyline(cells: Cells, wide: int, tall: int, letters: bool) -> list[Row]:
-    """Draw a bar for each cell; older cells have higher bars. A bar has `wide` x `tall` characters.
-
-    With `letters` the lines have no colours, and a row below the bars names the lines.
-    """
+def skyline(cells: Cells, wide: int, tall: int) -> list[Row]:
+    """Draw a bar for each cell; older cells have higher bars. A bar has `wide` x `tall` characters."""
     bar, gap = max(wide - 1, 1), " " if wide > 1 else ""
     living = cells.line != EMPTY
     most = 8 * tall if tall > 1 else 7  # a single row does not touch the row above
@@ -58,34 +54,19 @@ def skyline(cells: Cells, wide: int, tall: int, letters: bool) -> list[Row]:
     for below in range(8 * (tall - 1), -1, -8):
         heights = np.clip(eighths - below, 0, 8).tolist()
         glyphs = [EIGHTHS[height] * bar + gap for height in heights]
-        if below == 0 and not letters:
+        if below == 0:
             glyphs = [
                 g if live else "·" * bar + gap for g, live in zip(glyphs, living, strict=True)
             ]
         rows.append(_joined(glyphs, styles))
-    if letters:
-        named = [_letter(line) * bar + gap for line in cells.line.tolist()]
-        rows.append(_joined(named, styles))
     return rows
 
 
-def strip(cells: Cells, letters: bool) -> Row:
-    """Draw one character for each cell; with `letters`, ages in the upper half are capitals."""
-    if not letters:
-        return skyline(cells, 1, 1, letters=False)[0]
-    old = (cells.age >= 0.5).tolist()
-    glyphs = [_letter(line, up) for line, up in zip(cells.line.tolist(), old, strict=True)]
-    return _joined(glyphs, [_hue(line) for line in cells.line.tolist()])
+def field(cells: Cells, columns: int, scale: int) -> list[Row]:
+    """Draw cells, `columns` in a row, as colours, which are lighter with age.
 
-
-def field(cells: Cells, columns: int, scale: int, letters: bool) -> list[Row]:
-    """Draw cells, `columns` in a row, as letters or as colours, which are lighter with age.
-
-    In colours, the width of a cell is `scale` characters, and its height is `scale` / 2 rows.
+    The width of a cell is `scale` characters, and its height is `scale` / 2 rows.
     """
-    rows = [slice(at, at + columns) for at in range(0, len(cells.line), columns)]
-    if letters:
-        return [strip(cells.take(row), letters) for row in rows]
     return mosaic(np.kron(shades(cells).reshape(-1, columns), np.ones((scale, scale), int)))
 
 
@@ -139,12 +120,6 @@ def _joined(glyphs: list[str], styles: Iterable[Style]) -> Row:
     runs = groupby(zip(glyphs, styles, strict=True), key=lambda pair: id(pair[1]))
     parts = (list(run) for _, run in runs)
     return [Segment("".join(glyph for glyph, _ in part), part[0][1]) for part in parts]
-
-
-def _letter(line: int, capital: bool = False) -> str:
-    if line == EMPTY:
-        return "·"
-    return (LETTERS.upper() if capital else LETTERS)[line % len(LETTERS)]
 
 
 @cache

@@ -10,8 +10,7 @@ from rich.style import Style
 from primordia.config import Config
 from primordia.law.world import Cause
 from primordia.live.census import Census
-from primordia.live.ground import Medians
-from primordia.live.paint import FAINT, Row, width_of
+from primordia.live.paint import FAINT, Row
 
 STRONG = Style(bold=True)
 FILLED = Style(color="green")
@@ -45,13 +44,7 @@ def heading(config: Config, pace: str, seconds: float, width: int) -> Row:
     return [Segment(task, STRONG), Segment(about, FAINT), Segment(" " * gap + clock, FAINT)]
 
 
-def numbers(
-    census: Census,
-    cells: int,
-    outlook: Outlook,
-    takeovers: int | None,
-    ground: Medians | None,
-) -> dict[str, str]:
+def numbers(census: Census, cells: int, outlook: Outlook, takeovers: int | None) -> dict[str, str]:
     """Return counts by name, the most important first; unknown counts are left out.
 
     Args:
@@ -59,7 +52,6 @@ def numbers(
         cells: number of cells of one world.
         outlook: speed and remaining time.
         takeovers: number of takeovers in all worlds; None if lines of descent are not followed.
-        ground: whether good lines persist; None if unknown.
     """
     worlds = len(census.tick)
     values = {
@@ -73,9 +65,6 @@ def numbers(
         "time left": duration(outlook.seconds_left) if outlook.seconds_left else "",
         "takeovers": "" if takeovers is None else f"{takeovers:,}",
         "extinctions": f"{census.extinctions.sum():,}",
-        "children mutate": f"{ground.mutated:.0%}" if ground else "",
-        "mutants as good": f"{ground.as_good:.0%}" if ground else "",
-        "good lines hold": f"{ground.held:.2f}" if ground else "",
     }
     return {name: value for name, value in values.items() if value}
 
@@ -83,7 +72,7 @@ def numbers(
 def panel(values: dict[str, str], census: Census, bar: Row, width: int, height: int) -> list[Row]:
     """Return names and values side by side, the causes of death, and a bar; `height` limits the rows."""
     rows = _columns(values, width)[: max(height - 2, 1)]
-    return [*rows, _causes(census, width), bar][:height]
+    return [*rows, _causes(census), bar][:height]
 
 
 def _share(part: int, whole: int) -> str:
@@ -107,16 +96,12 @@ def _columns(values: dict[str, str], width: int) -> list[Row]:
     return rows
 
 
-def _causes(census: Census, width: int) -> Row:
-    """Return the causes of death, the most frequent first, as many as fit."""
+def _causes(census: Census) -> Row:
+    """Return the causes of death, the most frequent first."""
     counts = zip(census.deaths.sum(axis=0).tolist(), Cause, strict=True)
     known = sorted((each for each in counts if each[0]), reverse=True)
-    texts = [
-        ", ".join([*(f"{count:,} {cause.label}" for count, cause in known[:most]), *more])
-        for most in range(len(known), 0, -1)
-        for more in ([] if most == len(known) else ["..."],)
-    ]
-    return [Segment("died of  ", FAINT), Segment(fitting(texts or ["nothing yet"], width - 9))]
+    text = ", ".join(f"{count:,} {cause.label}" for count, cause in known)
+    return [Segment("died of  ", FAINT), Segment(text or "nothing yet")]
 
 
 def saturation(census: Census, cells: int, calm_needed: int, width: int) -> Row:
@@ -170,22 +155,13 @@ KEYS = (
 )
 
 
-def keys(shown: str, width: int) -> Row:
-    """Return the keys with their names; names that do not fit are left out.
-
-    `shown` has the first characters of the keys that mean something now.
-    """
+def keys(shown: str) -> Row:
+    """Return the keys with their names; `shown` has the first characters of those that mean something
+    now."""
     known = [(key, name) for key, name in KEYS if key[0] in shown]
-    everything = tuple(key for key, _ in KEYS)
-    for bare in ((), ("?",), ("?", "s"), ("?", "s", "n", "-+"), everything):
-        gap = "  " if not bare else " "
-        row: Row = []
-        for key, name in known:
-            before = Segment(gap if row else "")
-            row += [before, Segment(key, STRONG), Segment("" if key in bare else f" {name}", FAINT)]
-        if width_of(row) <= width:
-            break
-    return row
+    return [
+        part for key, name in known for part in (Segment(key, STRONG), Segment(f" {name}  ", FAINT))
+    ]
 
 
 def with_prefix(value: float | None) -> str:

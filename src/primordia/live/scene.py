@@ -65,17 +65,8 @@ class Grid(NamedTuple):
     def _filling(cls, room: Room, across: int, down: int, shown: int, edge: int) -> "Grid":
         high = room.height // down
         gap = 1 if high > 2 and down > 1 else 0
-        each = Room(max(room.width // across - edge, 1), max(high - gap, 1), room.letters)
+        each = Room(max(room.width // across - edge, 1), max(high - gap, 1))
         return cls(across, shown, each, gap)
-
-
-def cell_width(law: Law, seeds: list[int], alone: int | None, room: Room) -> int:
-    """Return the width of a cell in a room, in columns; 0 if not all cells of the shown worlds fit."""
-    form = form_of(law, room.letters)
-    if law.worlds == 1 or alone is not None:
-        return form.scale(room)
-    grid = Grid.of(form, law.worlds, _digits(seeds) + BESIDE, room)
-    return form.scale(grid.each) if grid.shown == law.worlds else 0
 
 
 class Stage:
@@ -98,7 +89,7 @@ class Stage:
             alone: the only world that is shown; None for all.
             room: the room for the drawing.
         """
-        form, tick = form_of(law, room.letters), to_host(world.worlds.tick)
+        form, tick = form_of(law), to_host(world.worlds.tick)
 
         def draw(number: int, room: Room) -> tuple[list[Row], str]:
             cells = cells_of(law, world, lines.get(number), number)
@@ -110,7 +101,7 @@ class Stage:
         if law.worlds == 1 or alone is not None:
             number = alone or 0
             rows, part = draw(number, room)
-            return Scene(rows, _legend(form, number in lines, room), part)
+            return Scene(rows, _legend(form, number in lines), part)
         return _tiles(world, form, draw, bool(lines), room)
 
     def follow(self, law: Law, world: World, lines: dict[int, Lines], number: int) -> None:
@@ -128,11 +119,6 @@ class Stage:
         return list(past)[1:]
 
 
-def _digits(seeds: list[int]) -> int:
-    """Return the number of digits of the longest seed."""
-    return max(len(str(seed)) for seed in seeds)
-
-
 def _tiles(
     world: World,
     form: Form,
@@ -143,7 +129,7 @@ def _tiles(
     """Draw worlds side by side and below each other, each with its seed and a mark if saturated."""
     seeds = to_host(world.worlds.seed).tolist()
     saturated = to_host(world.worlds.saturated).astype(np.int64) >= 0
-    digits = _digits(seeds)
+    digits = max(len(str(seed)) for seed in seeds)
     grid = Grid.of(form, len(seeds), digits + BESIDE, room)
     tiles, parts = [], dict[str, None]()
     for number in range(grid.shown):
@@ -156,7 +142,7 @@ def _tiles(
         for row in zip_longest(*tiles[at : at + grid.across], fillvalue=[]):
             rows.append([segment for tile in row for segment in tile])
         rows += [[]] * grid.gap
-    legend = _legend(form, followed, grid.each)
+    legend = _legend(form, followed)
     if saturated[: grid.shown].any():
         legend += ", ✓: saturated"
     shown = (part_of(grid.shown, len(seeds), "worlds"), *parts)
@@ -175,11 +161,10 @@ def _labelled(drawn: list[Row], label: str, mark: str, grid: Grid) -> list[Row]:
     return rows
 
 
-def _legend(form: Form, followed: bool, room: Room) -> str:
+def _legend(form: Form, followed: bool) -> str:
     """Return the meanings of what is drawn."""
-    mark = "letter" if room.letters else "colour"
     branch = "line of descent" if followed else "branch of the founder"
-    return f"{form.age(room)}, {mark}: {branch}"
+    return f"{form.age}, colour: {branch}"
 
 
 def cells_of(law: Law, world: World, lines: Lines | None, number: int) -> Cells:

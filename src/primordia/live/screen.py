@@ -26,7 +26,7 @@ Draw = Callable[[Room], list[Row]]
 
 
 def composed(
-    measure: Callable[[Room], int],
+    beside: bool,
     draw: Callable[[Room], Scene],
     numbers: Draw,
     organism: Draw | None,
@@ -34,10 +34,8 @@ def composed(
 ) -> list[Row]:
     """Return the rows of a screen.
 
-    Numbers go beside the world, or below it if that makes the cells larger.
-
     Args:
-        measure: returns the width of the worlds' cells in a room, in columns; 0 if not all cells fit.
+        beside: whether numbers go beside the world, if it is wide enough, and not below it.
         draw: draws the worlds.
         numbers: draws the numbers.
         organism: draws the organism that is shown; None if no organism is shown.
@@ -47,8 +45,7 @@ def composed(
     below = numbers(room._replace(height=max(room.height // 2, 3)))
     stacked = room._replace(height=max(room.height - len(below) - 2 * space, 1))
     side = room._replace(width=room.width - CELL - GAP, height=max(room.height - space, 1))
-    sizes = [_size(measure, each) for each in (side, stacked)]
-    if side.width >= SCENE and sizes[0] >= sizes[1]:
+    if beside and side.width >= SCENE:
         left = _scene(draw, side)
         width = room.width - max(map(width_of, left), default=0) - GAP
         column = room._replace(width=width, height=side.height)
@@ -56,18 +53,10 @@ def composed(
     if organism is None:
         return [[]] * space + _scene(draw, stacked) + [[]] * space + below
     width = min(max(room.width * 2 // 5, NARROWEST), BROADEST, room.width)
-    beside = organism(stacked._replace(width=width))
-    if room.width - width - GAP < SCENE:
-        above = beside
-    else:
-        above = joined(_scene(draw, stacked._replace(width=room.width - width - GAP)), beside)
+    above = organism(stacked._replace(width=width))
+    if (left_over := room.width - width - GAP) >= SCENE:
+        above = joined(_scene(draw, stacked._replace(width=left_over)), above)
     return [[]] * space + above + [[]] * space + below
-
-
-def _size(measure: Callable[[Room], int], room: Room) -> tuple[int, int]:
-    """Return the size of a cell, and the size of the room if not all cells fit."""
-    scale = measure(_drawn(room))
-    return scale, 0 if scale else room.width * room.height
 
 
 def _column(numbers: Draw, organism: Draw | None, room: Room) -> list[Row]:
@@ -79,16 +68,12 @@ def _column(numbers: Draw, organism: Draw | None, room: Room) -> list[Row]:
     return [*above, [], *organism(left)]
 
 
-def _drawn(room: Room) -> Room:
-    """Return the room for the worlds themselves, without legend."""
-    return room._replace(height=room.height - (1 if room.height >= LOW else 0))
-
-
 def _scene(draw: Callable[[Room], Scene], room: Room) -> list[Row]:
     """Return the worlds with their legend, where there is room for it."""
-    drawn = draw(_drawn(room))
+    worlds = room._replace(height=room.height - (1 if room.height >= LOW else 0))
+    drawn = draw(worlds)
     if drawn.part:
-        drawn = draw(_drawn(room)._replace(height=max(_drawn(room).height - 1, 1)))
+        drawn = draw(worlds._replace(height=max(worlds.height - 1, 1)))
     legend = [[drawn.part]] if drawn.part else []
     if room.height >= LOW:
         legend.append([drawn.legend, drawn.legend.replace(" of descent", "")])

@@ -5,7 +5,6 @@ import time
 from signal import SIGINT, raise_signal
 from types import TracebackType
 
-import numpy as np
 from rich.console import Console, ConsoleOptions, RenderResult
 from rich.live import Live
 from rich.segment import Segment
@@ -14,16 +13,14 @@ from primordia.live.census import Census, Speed
 from primordia.live.companion import Companion
 from primordia.live.descent import Descent
 from primordia.live.forms import Room
-from primordia.live.ground import Ground, medians
 from primordia.live.pace import Pace
 from primordia.live.paint import FAINT, Row
 from primordia.live.panel import Outlook, heading, keys, numbers, panel, saturation
-from primordia.live.scene import Scene, Stage, cell_width
+from primordia.live.scene import Scene, Stage
 from primordia.live.screen import composed
 from primordia.live.terminal import Keyboard
 from primordia.live.words import pages
 from primordia.printable import printable
-from primordia.random.wide import to_host
 from primordia.runs.loop import Status
 
 
@@ -44,10 +41,8 @@ class View:
         self, console: Console, pace: Pace | None = None, keyboard: Keyboard | None = None
     ) -> None:
         self._console, self._pace, self._keyboard = console, pace or Pace(), keyboard
-        self._letters = console.no_color or console.color_system in (None, "standard")
         self._live = Live(console=console, auto_refresh=False, redirect_stderr=sys.stderr.isatty())
         self._speed, self._stage, self._descent = Speed(), Stage(), Descent()
-        self._ground = Ground(0, 0)
         self._size, self._due, self._cost, self._stale = console.size, 0.0, 0.0, False
         self._moment = 0.0
         self._status: Status | None = None
@@ -79,9 +74,6 @@ class View:
         """Follow a chunk, draw if a frame is due, and wait as the pace demands."""
         law = status.engine.law
         self._descent.follow(status, min(law.worlds, self._console.size.height))
-        if self._status is None:
-            self._ground = Ground(law.cells, law.worlds)
-        self._ground.follow(status.engine.events)
         self._status, self._stale = status, True
         now = time.perf_counter()
         alone = law.worlds == 1 or self._alone is not None
@@ -141,12 +133,12 @@ class View:
 
     def _rows(self, status: Status) -> list[Row]:
         width, height = self._size.width, self._size.height - 1
-        room = Room(width, max(height - (2 if self._keyboard else 1), 1), self._letters)
+        room = Room(width, max(height - (2 if self._keyboard else 1), 1))
         rows = [heading(status.engine.config, str(self._pace), status.wall_s, width)]
         rows += self._words(room) or self._world(status, room)
         if self._keyboard:
             rows += [[]] * (height - 1 - len(rows))
-            rows = [*rows[: height - 1], self._keys(status, width)]
+            rows = [*rows[: height - 1], self._keys(status)]
         return rows[:height]
 
     def _words(self, room: Room) -> list[Row]:
@@ -159,10 +151,10 @@ class View:
             return []
         return found[self._page]
 
-    def _keys(self, status: Status, width: int) -> Row:
+    def _keys(self, status: Status) -> Row:
         """Return the keys that mean something now."""
         many = "w" if status.engine.law.worlds > 1 else ""
-        return keys(f"s-{many}{'on' if self._companion else 'o'}?q", width)
+        return keys(f"s-{many}{'on' if self._companion else 'o'}?q")
 
     def _world(self, status: Status, room: Room) -> list[Row]:
         engine, alone = status.engine, self._alone
@@ -183,10 +175,8 @@ class View:
         def organism(room: Room) -> list[Row]:
             return self._companion.rows(engine, alone, room) if self._companion else []
 
-        def measure(room: Room) -> int:
-            return cell_width(law, to_host(world.worlds.seed).tolist(), alone, room)
-
-        return composed(measure, draw, counts, organism if self._companion else None, room)
+        beside = law.placement.shape(law.cells)[0] > 1  # a torus is high, and a ring is wide
+        return composed(beside, draw, counts, organism if self._companion else None, room)
 
     def _numbers(self, status: Status, census: Census) -> dict[str, str]:
         """Return the counts of the worlds that are shown."""
@@ -194,11 +184,7 @@ class View:
         left = self._speed.seconds_left(status.limits) if status.limits else None
         outlook = Outlook(self._speed.organism_ticks_per_s(), left)
         shown = range(law.worlds) if alone is None else [alone]
-        takeovers = self._descent.takeovers(shown)
-        ticks = to_host(status.engine.state.world.worlds.tick).astype(np.int64)
-        measured = self._ground.measured(ticks)
-        ground = medians([each for each in measured if each.world in shown])
-        return numbers(census, law.cells, outlook, takeovers, ground)
+        return numbers(census, law.cells, outlook, self._descent.takeovers(shown))
 
 
 def _no_keys(seconds: float) -> str:

@@ -1,4 +1,4 @@
-"""The display of a run that advances: a view in a terminal, plain lines elsewhere."""
+"""The display of a run that advances: a view in a terminal with colours, plain lines elsewhere."""
 
 import sys
 import time
@@ -18,7 +18,7 @@ from primordia.runs.loop import Listener, Status
 
 @contextmanager
 def watching(quiet: bool, speed: float | None = None) -> Iterator[Listener | None]:
-    """Yield the listener that suits this terminal, or plain lines without a terminal.
+    """Yield the listener that suits this terminal, or plain lines without a terminal or without colours.
 
     Args:
         quiet: show nothing.
@@ -29,7 +29,7 @@ def watching(quiet: bool, speed: float | None = None) -> Iterator[Listener | Non
     console = Console(highlight=False, file=sys.__stdout__)
     if quiet:
         yield pace if speed else None
-    elif not sys.stdout.isatty() or console.is_dumb_terminal:
+    elif not sys.stdout.isatty() or console.no_color or console.is_dumb_terminal:
         yield Plain(pace)
     else:
         with (

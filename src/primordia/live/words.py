@@ -29,15 +29,10 @@ WORDS = {
     "mean age": "Mean age of the living, in ticks.",
     "oldest": "Age of the oldest of the living, in ticks.",
     "line of descent": "Organisms that descend from one organism at an earlier moment. A line has"
-    " one colour or letter.",
+    " one colour.",
     "branch": "Organisms that descend from one child of a founder.",
     "takeovers": "How often only one line was left, so that all the living descend from one ancestor.",
     "extinctions": "How often no organism was alive. Life then begins again with new founders.",
-    "children mutate": "Share of the latest births whose genome differs from the parent's.",
-    "mutants as good": "Share of good parents' mutants that live as long as the parent, divided by"
-    " that of the parents' copies.",
-    "good lines hold": "Above 1, a long-lived line persists in spite of its bad mutants. Below 1, such"
-    " lines are lost.",
     "organism-ticks/s": "Ticks lived by the organisms of all worlds together in a second of your time.",
     "time left": "Time until the last world reaches its limit, at the present speed.",
     "calm": "Without births and deaths.",

@@ -17,8 +17,7 @@ from primordia.phylogeny.fixation import UNKNOWN, branches, first_ticks
 from primordia.phylogeny.forks import Say, whole_past
 from primordia.phylogeny.frequencies import instants
 from primordia.phylogeny.living import Census, Turnover
-from primordia.runs.archive import Archive
-from primordia.runs.arm import run_of
+from primordia.runs.archive import Archive, run_of
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from functools import cache, cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pyarrow as pa
@@ -58,9 +58,9 @@ class Archive(Records):
         self._fitting: set[Path] = set()  # the checkpoints whose arrays fit the settings
 
     @property
-    def paths(self) -> tuple[Path, ...]:
-        """One path: the run's directory."""
-        return (self.path,)
+    def runs(self) -> tuple[Records, ...]:
+        """This run alone."""
+        return (self,)
 
     def parts(self) -> "Iterator[Archive]":
         """Yield this run, and nothing else."""
@@ -179,11 +179,6 @@ class Archive(Records):
         """The sums of row hashes that the newest whole checkpoint holds."""
         return self.last.digests
 
-    @property
-    def world_seeds(self) -> np.ndarray:
-        """The seed of each world, uint64 (W,)."""
-        return self.config.world_seeds
-
     @cached_property
     def state(self) -> Arrays:
         """The arrays of the newest whole checkpoint.
@@ -262,3 +257,9 @@ class Archive(Records):
         if not len(lives):
             raise InputError(f"{self.path} is empty: nothing has lived in it yet")
         return lives
+
+
+def run_of(records: Records, world: int) -> tuple[Archive, int]:
+    """Return the run that holds a world, and the number of the world in that run."""
+    number = int(np.searchsorted(records.firsts, world, side="right")) - 1
+    return cast(Archive, records.runs[number]), world - int(records.firsts[number])

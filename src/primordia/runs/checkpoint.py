@@ -24,7 +24,7 @@ from primordia.runs.arrays import Arrays, FaultOf
 from primordia.runs.code import FOLDER as CODE
 from primordia.runs.kept import FOLDER as FILES
 from primordia.runs.manifest import INPUTS, Manifest, Progress, Seal
-from primordia.runs.record import Recorder
+from primordia.runs.recorder import Recorder
 from primordia.runs.schema import TABLES
 
 KEPT = 2
@@ -67,58 +67,43 @@ def save(run: Path, arrays: dict[str, np.ndarray], recorder: Recorder, progress:
     if not NUMBER.fullmatch(name := f"{number:06d}"):
         raise Trouble(f"{run / FOLDER} has no free number for another checkpoint")
     final = run / FOLDER / name
-    _write(run, final, arrays, recorder, progress)
+    write(run, final, arrays, recorder, progress)
     for old in numbered(run)[:-KEPT]:
         files.remove(old)
 
 
-def save_origin(
-    run: Path, arrays: dict[str, np.ndarray], recorder: Recorder, progress: Progress
-) -> None:
-    """Write the state that a fork begins with; see `save`."""
-    _write(run, run / ORIGIN, arrays, recorder, progress)
-
-
-def _write(
+def write(
     run: Path,
     final: Path,
     arrays: dict[str, np.ndarray],
     recorder: Recorder,
     progress: Progress,
 ) -> None:
+    """Write a checkpoint into the new folder `final`, such as RUN/origin; see `save`."""
     temporary = final.with_name(files.TEMPORARY + final.name)
+    state, manifest = temporary / STATE, temporary / MANIFEST
     try:
         temporary.mkdir()
         with interrupts.undone_by(partial(shutil.rmtree, temporary, ignore_errors=True)):
-            _fill(run, temporary, arrays, recorder, progress)
+            np.savez(state, allow_pickle=False, **arrays, **recorder.tails())
+            files.sync(state)
+            content = Manifest(
+                progress=progress,
+                inputs={name: Seal(**files.seal(run / name)) for name in _inputs(run)},
+                state=Seal(**files.seal(state)),
+                segments={table.name: table.segments for table in recorder.tables},
+                digests={
+                    name: [tuple(each) for each in digest.tolist()]
+                    for name, digest in recorder.digests().items()
+                },
+            )
+            manifest.write_text(content.text(), encoding="utf-8")
+            files.sync(manifest)
+            files.sync(temporary)
             temporary.rename(final)
             files.sync(final.parent)
     except OSError as error:
         raise Trouble(f"{final} cannot be written: {error.strerror or error}") from None
-
-
-def _fill(
-    run: Path,
-    folder: Path,
-    arrays: dict[str, np.ndarray],
-    recorder: Recorder,
-    progress: Progress,
-) -> None:
-    state, manifest = folder / STATE, folder / MANIFEST
-    np.savez(state, allow_pickle=False, **arrays, **recorder.tails())
-    files.sync(state)
-    content = Manifest(
-        progress=progress,
-        inputs={name: Seal(**files.seal(run / name)) for name in _inputs(run)},
-        state=Seal(**files.seal(state)),
-        segments={table.name: table.segments for table in recorder.tables},
-        digests={
-            table.name: [tuple(each) for each in table.digest.tolist()] for table in recorder.tables
-        },
-    )
-    manifest.write_text(content.text(), encoding="utf-8")
-    files.sync(manifest)
-    files.sync(folder)
 
 
 def _inputs(run: Path) -> list[str]:

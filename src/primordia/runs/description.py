@@ -6,19 +6,20 @@ The description is written into the run, so that records can be read without the
 from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
-from typing import Annotated
+from typing import Annotated, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from primordia import files
+from primordia.errors import InputError
 from primordia.habitats.checks import RATES
 from primordia.habitats.contract import AnyHabitat
 from primordia.law.law import Law
-from primordia.runs import stored
 from primordia.settings.values import LARGEST
 
 FILE = "description.json"
 EMPTY: Mapping[str, str] = MappingProxyType({})
+Model = TypeVar("Model", bound=BaseModel)
 
 
 class Description(BaseModel):
@@ -87,4 +88,12 @@ def read(run: Path) -> Description:
     Raises:
         InputError: the description is missing or damaged.
     """
-    return stored.read(run / FILE, Description, f"{run / FILE} is missing or damaged; put it back")
+    return from_json(run / FILE, Description, f"{run / FILE} is missing or damaged; put it back")
+
+
+def from_json(path: Path, model: type[Model], otherwise: str) -> Model:
+    """Return the content of a JSON file; if it is invalid, raise InputError with the text `otherwise`."""
+    try:
+        return model.model_validate_json(files.read(path))
+    except (OSError, ValidationError):
+        raise InputError(otherwise) from None

@@ -4,9 +4,9 @@ The file is for people and not part of a run's exact records: after an interrupt
 appear twice.
 """
 
-import os
 from pathlib import Path
 
+from primordia import files
 from primordia.errors import Trouble
 from primordia.printable import printable
 
@@ -17,18 +17,13 @@ def note(run: Path, lines: list[str]) -> None:
     """Append lines.
 
     Raises:
-        Trouble: the lines cannot be written, or the file is a link.
+        InputError: the file is a link, or no regular file. Trouble: the lines cannot be written.
     """
     if not lines:
         return
-    text = "".join(printable(line, kept="\t") + "\n" for line in lines).encode()
+    files.check_output(run / FILE)
     try:
-        flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | os.O_NOFOLLOW | os.O_NONBLOCK
-        file = os.open(run / FILE, flags, 0o666)
-        try:
-            while text:
-                text = text[os.write(file, text) :]
-        finally:
-            os.close(file)
+        with (run / FILE).open("a", encoding="utf-8") as file:
+            file.writelines(printable(line, kept="\t") + "\n" for line in lines)
     except OSError as error:
         raise Trouble(f"{run / FILE} cannot be written: {error.strerror}") from None

@@ -73,7 +73,7 @@ def fork(
     progress = Progress(limits=changed.stop, wall_s=0.0, exact=after.chunks.exact)
 
     def save_origin() -> None:
-        checkpoint.save_origin(out, after.arrays(), recorder, progress)
+        checkpoint.write(out, out / checkpoint.ORIGIN, after.arrays(), recorder, progress)
 
     with directory.create(out, changed, save_origin):
         pass

@@ -1,12 +1,11 @@
 """The loop of a run: begin or resume, then advance, record and checkpoint.
 
-A run is a directory, whose records follow from the files that it began with; see `record` and
-`checkpoint`.
+A run is a directory, whose records follow from the files that it began with; see `recorder`
+and `checkpoint`.
 """
 
 import time
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import chain, islice, repeat
 from pathlib import Path
@@ -24,7 +23,7 @@ from primordia.runs import checkpoint, directory, faults
 from primordia.runs.archive import Archive
 from primordia.runs.checkpoint import Checkpoint
 from primordia.runs.manifest import Progress
-from primordia.runs.record import Recorder
+from primordia.runs.recorder import Recorder
 from primordia.runs.schema import Schema
 from primordia.settings import limits as stop
 
@@ -72,22 +71,6 @@ def start(
         recorder = recorder_for(engine, run)
         progress = Progress(limits=config.stop, wall_s=0.0, exact=engine.chunks.exact)
         drive(engine, recorder, run, progress, checkpoint_every, listen)
-
-
-def begin_or_resume(
-    config: Config, run: Path, *, checkpoint_every: float = 60.0, listen: Listener | None = None
-) -> list[str]:
-    """Begin a run, or resume it if it has begun; see `start` and `resume`.
-
-    Raises:
-        InputError: the run was begun with other settings; limits may differ.
-    """
-    if directory.clear_unbegun(run):
-        start(config, run, checkpoint_every=checkpoint_every, listen=listen)
-        return []
-    directory.check_same_settings(config, run)
-    limits = config.stop.model_dump()
-    return resume(run, limits, checkpoint_every=checkpoint_every, listen=listen)
 
 
 def resume(
@@ -200,8 +183,11 @@ def drive(
                 recorder.append(events)
                 faults.note(run, engine.faults)
                 if listen is not None:
-                    with saver.saving_on_error():
+                    try:
                         listen(Status(engine, saver.seconds, limits))
+                    except BaseException:
+                        saver.save()
+                        raise
                 saver.save_if_due()
             if not noted:
                 recorder.finish()
@@ -217,52 +203,43 @@ def _chunks(engine: Engine, limits: Limits, noted: list[int]) -> Iterator[Events
         yield engine.advance(limits)
 
 
+@dataclass
 class Saver:
     """The checkpoints of a running run: some soon after the first chunk, then one in each interval."""
 
-    def __init__(
-        self,
-        engine: Engine,
-        recorder: Recorder,
-        run: Path,
-        progress: Progress,
-        every: float,
-        began: float,
-        check: Callable[[], None],
-    ) -> None:
-        self._check = check
-        self._engine, self._recorder, self._run, self._progress = engine, recorder, run, progress
-        self._before, self._every = progress.wall_s, every
-        self._began, self._saved = began, time.perf_counter()
-        self._waits = chain(EARLY, repeat(every))
-        self._wait = min(next(self._waits), every)
+    engine: Engine
+    recorder: Recorder
+    run: Path
+    progress: Progress
+    every: float
+    """seconds from one checkpoint to the next"""
+    began: float
+    """seconds of the clock at which this process started or resumed the run"""
+    check: Callable[[], None]
+    """raises Trouble if the run's folder was removed or replaced"""
+
+    def __post_init__(self) -> None:
+        self._before, self._saved = self.progress.wall_s, time.perf_counter()
+        self._waits = chain(EARLY, repeat(self.every))
+        self._wait = min(next(self._waits), self.every)
 
     @property
     def seconds(self) -> float:
         """Seconds since this process started or resumed the run."""
-        return time.perf_counter() - self._began
+        return time.perf_counter() - self.began
 
     def save(self) -> None:
         """Write a checkpoint; raise Trouble if the run's folder was removed or replaced."""
-        self._check()
-        self._progress.wall_s = self._before + self.seconds
-        checkpoint.save(self._run, self._engine.arrays(), self._recorder, self._progress)
+        self.check()
+        self.progress.wall_s = self._before + self.seconds
+        checkpoint.save(self.run, self.engine.arrays(), self.recorder, self.progress)
 
     def save_if_due(self) -> None:
         """Write a checkpoint if the interval since the last one has passed."""
         if time.perf_counter() - self._saved >= self._wait:
             self.save()
             self._saved = time.perf_counter()
-            self._wait = min(next(self._waits), self._every)
-
-    @contextmanager
-    def saving_on_error(self) -> Iterator[None]:
-        """Write a checkpoint if the `with` block fails."""
-        try:
-            yield
-        except BaseException:
-            self.save()
-            raise
+            self._wait = min(next(self._waits), self.every)
 
 
 def _check_same(run: Path, differ: list[str], inexact: bool) -> None:

@@ -9,7 +9,7 @@ from primordia import files
 from primordia.errors import InputError
 from primordia.runs import bundle, checkpoint, directory
 from primordia.runs.archive import Archive
-from primordia.runs.arm import Arm
+from primordia.runs.arm import arm
 from primordia.runs.records import Records
 
 EXPERIMENT = "experiment.toml"
@@ -30,7 +30,7 @@ def opened(places: Sequence[str | Path], name: str | None = None) -> Records:
     if [Path(place) for place in places] == paths and len(paths) == 1 and name is None:
         return archive(paths[0])
     runs = sorted(map(archive, paths), key=lambda run: run.config.seed)
-    return Arm(Path(name if name is not None else str(places[0])), runs)
+    return arm(Path(name if name is not None else str(places[0])), runs)
 
 
 def only(places: Sequence[str | Path]) -> Archive:

@@ -1,14 +1,14 @@
-"""The records of worlds, from which all figures and numbers are made.
+"""The records of worlds, from which all figures and numbers are made: those of one run or of several.
 
-`archive.Archive` reads the records of one run directory. `arm.Arm` reads the records of several
-runs as one.
+`archive.Archive` is one run. Several runs are read as one arm; they may be jobs that ran on any
+machine and in any order. The worlds of the first run come first. Worlds keep their seeds. So a world
+has the same record and digest in a separate run and beside other worlds.
 """
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache, cached_property, partial, wraps
 from pathlib import Path
-from typing import Any, TypeVar, cast
+from typing import Any, Literal, TypeVar, cast
 
 import numpy as np
 import pyarrow as pa
@@ -19,79 +19,124 @@ from primordia.config import Config
 from primordia.habitats.contract import AnyHabitat
 from primordia.law.heredity import Heredity
 from primordia.law.law import Law
-from primordia.runs.arrays import read_count
+from primordia.runs.arrays import WORLDS, read_count
 from primordia.runs.description import Description
-from primordia.runs.lives import Lives
+from primordia.runs.lives import Lives, joined
 from primordia.runs.manifest import Progress
 from primordia.runs.schema import Schema
+from primordia.settings.limits import Stop
 
 F = TypeVar("F", bound=Callable)
 
 
-class Records(ABC):
-    """The records of W worlds with the same law; each part is read or built at its first use."""
+class Records:
+    """The records of W worlds with the same law; each part is read or built at its first use.
 
-    @property
-    def made_on(self) -> str:
-        """The kind of device on which the run began."""
-        return str(self.versions.get("device", device.CPU))
+    This class joins the records of runs. `archive.Archive` reads those of one run.
+    """
 
     path: Path
     """the directory for figures and videos"""
     config: Config
     """the settings; `seeds` is W"""
 
+    def __init__(self, path: Path, runs: Sequence["Records"]) -> None:
+        """Join one run or more, with the same settings except those of `arm.OWN`; see `arm.arm`."""
+        self.path, self._runs = path, tuple(runs)
+        self.config = runs[0].config.model_copy(update={"seeds": sum(r.config.seeds for r in runs)})
+
     @property
-    @abstractmethod
+    def runs(self) -> tuple["Records", ...]:
+        """The runs; those of one run are the run itself."""
+        return self._runs
+
+    @cached_property
+    def firsts(self) -> np.ndarray:
+        """Number of each run's first world, int64 (R,)."""
+        return np.cumsum([0, *(run.config.seeds for run in self.runs[:-1])])
+
+    @property
     def paths(self) -> tuple[Path, ...]:
-        """The run directories that hold the records."""
+        """The directories of all runs."""
+        return tuple(run.path for run in self.runs)
 
-    @abstractmethod
-    def parts(self) -> "Iterator[Records]":
-        """Yield the records of each run, in the order of the worlds; a run is read when it is yielded."""
+    def parts(self) -> Iterator["Records"]:
+        """Yield each run in the order of the worlds, and release its arrays and lives afterwards."""
+        for number, run in enumerate(self.runs):
+            yield run
+            self._states.keep(number)
+            run.release()
 
-    @property
-    @abstractmethod
+    def release(self) -> None:
+        """Release arrays and lives, which are read again at their next use."""
+        for run in self.runs:
+            run.release()
+
+    @cached_property
     def description(self) -> Description:
-        """The description of the run's parts, written when the run began."""
+        """The description of the runs' parts, written when they began and the same in all."""
+        return self.runs[0].description
 
-    @property
-    @abstractmethod
+    @cached_property
     def versions(self) -> dict[str, Any]:
-        """The format, package versions and device with which the worlds began."""
+        """The format, package versions and device with which the worlds began; different versions of
+        several runs are separated by commas."""
+        names = dict.fromkeys(name for run in self.runs for name in run.versions)
+        return {name: self._one_or_all(name) for name in names}
+
+    def _one_or_all(self, name: str) -> Any:
+        found = list(dict.fromkeys(run.versions.get(name, "none") for run in self.runs))
+        return found[0] if len(found) == 1 else ", ".join(map(str, found))
 
     @property
-    @abstractmethod
+    def made_on(self) -> str:
+        """The kind of device on which the run began."""
+        return str(self.versions.get("device", device.CPU))
+
+    @cached_property
     def world_seeds(self) -> np.ndarray:
         """The seed of each world, uint64 (W,)."""
+        return np.concatenate([run.config.world_seeds for run in self.runs])
 
     @property
-    @abstractmethod
     def progress(self) -> Progress:
-        """Seconds spent, the present limits, and whether everything repeats bit for bit."""
+        """The seconds spent, the present limits that all runs share, and whether everything repeats
+        bit for bit."""
+        each = [run.progress for run in self.runs]
+        common = set.intersection(*(set(one.limits) for one in each))
+        return Progress(
+            limits=Stop(**dict(common)),
+            wall_s=sum(one.wall_s for one in each),
+            exact=all(one.exact for one in each),
+            restarts=sum(one.restarts for one in each),
+        )
 
     @property
-    @abstractmethod
     def damaged(self) -> list[str]:
-        """The fault of each damaged checkpoint that is newer than the state."""
+        """The fault of each damaged checkpoint that is newer than the state of its run."""
+        return [fault for run in self.runs for fault in run.damaged]
 
     @property
-    @abstractmethod
     def row_digests(self) -> dict[str, np.ndarray]:
         """The sums of row hashes of each table, uint64 (W, 2)."""
+        tables = [run.row_digests for run in self.runs]
+        return {name: np.concatenate([each[name] for each in tables]) for name in tables[0]}
 
     @property
-    @abstractmethod
     def state(self) -> Mapping[str, np.ndarray]:
         """The arrays of the newest state, by name; the first axis is worlds, or cells world by world."""
+        return self._states
 
-    @property
-    @abstractmethod
+    @cached_property
+    def _states(self) -> "_Joined":
+        return _Joined(self.runs, self.firsts, "state")
+
+    @cached_property
     def origin(self) -> Mapping[str, np.ndarray] | None:
         """The arrays that a fork began with, as in `state`; None if this is not a fork."""
+        return None if self.config.fork is None else _Joined(self.runs, self.firsts, "origin")
 
-    @property
-    @abstractmethod
+    @cached_property
     def lives(self) -> Lives:
         """All lives, one row each.
 
@@ -99,21 +144,23 @@ class Records(ABC):
             InputError: nothing has lived yet.
             Trouble: births and deaths contradict each other.
         """
+        return joined([run.lives for run in self.parts()], self.firsts)
 
-    @abstractmethod
     def segments(self, name: str, columns: Sequence[str] | None = None) -> Iterator[pa.Table]:
         """Read a table part by part; see `table`."""
+        for first, run in zip(self.firsts.tolist(), self.parts(), strict=True):
+            for part in run.segments(name, columns):
+                yield _shifted(part, first)
 
-    @abstractmethod
     def admit(self, *parts: str) -> None:
         """Allow the user's own code of these parts, or of all parts, to be imported.
 
         Raises:
             InputError: the user has not trusted the code yet.
         """
+        self.runs[0].admit(*parts)
 
-    @property
-    @abstractmethod
+    @cached_property
     def habitat(self) -> AnyHabitat:
         """The habitat, only for reading its properties; build a new one to make bodies.
 
@@ -121,16 +168,17 @@ class Records(ABC):
             InputError: the user has not trusted the habitat's code yet (`law` and `heredity` also
                 raise this error).
         """
+        return self.runs[0].habitat
 
-    @property
-    @abstractmethod
+    @cached_property
     def law(self) -> Law:
         """The law of the worlds."""
+        return self.runs[0].law
 
-    @property
-    @abstractmethod
+    @cached_property
     def heredity(self) -> Heredity:
         """The part of the law that makes genomes. Heredity needs neither habitat nor brain."""
+        return self.runs[0].heredity
 
     @cached_property
     def layout(self) -> Layout:
@@ -179,6 +227,73 @@ class Records(ABC):
         order = np.lexsort((number, world))
         rows = order[lives.rows_in(world[order], number[order])]
         return [births[name].fill_null(-1).to_numpy()[rows] for name in columns]
+
+
+class _Joined(Mapping[str, np.ndarray]):
+    """The arrays of several states by name, joined along their first axis.
+
+    Arrays of worlds are small and are copied when a run is first opened. Other arrays are read at
+    each use.
+    """
+
+    def __init__(
+        self, runs: Sequence[Records], firsts: np.ndarray, which: Literal["state", "origin"]
+    ) -> None:
+        self._runs, self._firsts, self._which = runs, firsts, which
+        self._names = [name for name in self._of(runs[0]) if not name.startswith("tail.")]
+        self._read: dict[str, np.ndarray] = {}
+        self._worlds: dict[str, np.ndarray] = {}
+        self._kept, self._count = np.zeros(len(runs), bool), sum(run.config.seeds for run in runs)
+
+    def keep(self, number: int) -> None:
+        """Copy the arrays of the worlds of one run; `number` is the run's index in the arm."""
+        if self._kept[number]:
+            return
+        stored, first = self._of(self._runs[number]), self._firsts[number]
+        for name in self._names:
+            if name.startswith(WORLDS):
+                own = stored[name]
+                if name not in self._worlds:
+                    self._worlds[name] = np.empty((self._count, *own.shape[1:]), own.dtype)
+                self._worlds[name][first : first + len(own)] = own
+        self._kept[number] = True
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        if name not in self._names:
+            raise KeyError(name)
+        if name.startswith(WORLDS):
+            for number in np.flatnonzero(~self._kept).tolist():
+                self.keep(number)
+                self._runs[number].release()
+            return self._worlds[name]
+        if name not in self._read:
+            self._read[name] = np.concatenate([self._one(run, name) for run in self._runs])
+        return self._read[name]
+
+    def _one(self, run: Records, name: str) -> np.ndarray:
+        array = self._of(run)[name]
+        run.release()
+        return array
+
+    def _of(self, run: Records) -> Mapping[str, np.ndarray]:
+        stored = run.state if self._which == "state" else run.origin
+        assert stored is not None
+        return stored
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+
+def _shifted(part: pa.Table, first: int) -> pa.Table:
+    """Return rows with worlds numbered from `first`."""
+    place = part.schema.get_field_index("world")
+    if place < 0 or first == 0:
+        return part
+    world = part["world"].to_numpy() + np.int32(first)
+    return part.set_column(place, part.schema.field(place), pa.array(world))
 
 
 def on_its_device(function: F) -> F:

@@ -20,6 +20,3 @@ for command in (
     of_pairs.compete,
 ):
     assay.add_command(command)
-
-COMMANDS = (assay,)
-"""The commands of this module."""

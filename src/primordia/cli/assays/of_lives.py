@@ -14,7 +14,6 @@ from primordia.cli.assays.options import (
     tell,
     ticks_option,
 )
-from primordia.cli.cache import cache_option
 from primordia.cli.flags import HabitatCommand, trust_option
 from primordia.cli.numbers import COUNT, Finite
 from primordia.cli.paths import PathType
@@ -35,19 +34,21 @@ task_option = click.option(
 )
 
 
-def assay_of_lives(short_help: str) -> Callable:
-    """Return a decorator for commands whose subjects live again; habitat settings are flags too."""
-    options = (
+def assay_of_lives(short_help: str, genomes: bool = True) -> Callable:
+    """Return a decorator for commands whose subjects live again; habitat settings are flags too.
+
+    `genomes` says whether the subjects may be genomes of a file, which live in the task of --task.
+    """
+    options: tuple[Any, ...] = (
         click.command(cls=HabitatCommand, short_help=short_help),
         source_argument,
         organisms_argument,
         world_option,
-        task_option,
+        *([task_option] if genomes else []),
         games_option,
         ticks_option,
         out_option,
         trust_option,
-        cache_option,
         json_option,
         click.pass_obj,
     )

@@ -9,7 +9,6 @@ import click
 from primordia.cli.assays import tables
 from primordia.cli.assays.of_lives import SUFFIX, subjects_of
 from primordia.cli.assays.options import json_option, out_option, tell
-from primordia.cli.cache import cache_option
 from primordia.cli.flags import HabitatCommand, trust_option
 from primordia.cli.numbers import COUNT, TICKS
 
@@ -33,7 +32,6 @@ NUMBERED = re.compile(r"(?P<place>.+):(?P<organism>[0-9]{1,18})(@(?P<world>[0-9]
 )  # fmt: skip
 @out_option
 @trust_option
-@cache_option
 @json_option
 @click.pass_obj
 def compete(

@@ -6,7 +6,7 @@ from typing import Any
 import click
 
 from primordia.cli.assays import tables
-from primordia.cli.assays.of_lives import SUFFIX, assay_of_lives, source_argument
+from primordia.cli.assays.of_lives import assay_of_lives, source_argument
 from primordia.cli.assays.options import (
     after_option,
     arms_of,
@@ -16,7 +16,6 @@ from primordia.cli.assays.options import (
     tell,
     ticks_option,
 )
-from primordia.cli.cache import cache_option
 from primordia.cli.flags import HabitatCommand, trust_option
 from primordia.cli.numbers import COUNT
 
@@ -34,7 +33,6 @@ from primordia.cli.numbers import COUNT
 @ticks_option
 @out_option
 @trust_option
-@cache_option
 @json_option
 @click.pass_obj
 def garden(
@@ -65,14 +63,13 @@ def garden(
     "--most", type=click.IntRange(min=2), default=200, show_default=True,
     help="At most this many genomes of the line live again.",
 )  # fmt: skip
-@assay_of_lives("Measure when a line of descent became good.")
+@assay_of_lives("Measure when a line of descent became good.", genomes=False)
 def line(
     habitat: dict[str, Any],
     /,
     run: Path,
     organisms: tuple[int, ...],
     world: int | None,
-    task: str | None,
     trust: bool,
     out: Path | None,
     as_json: bool,
@@ -85,13 +82,7 @@ def line(
     """
     from primordia.api import load
     from primordia.assays.line import line as measure
-    from primordia.errors import InputError
 
-    if task is not None or run.suffix == SUFFIX:
-        raise InputError(
-            "the assay `line` needs a run, since a genome file holds no ancestors; give the run that"
-            " the genomes come from, without --task"
-        )
     opened = load(run, trust).opened()
     numbers = [(each, world or 0) for each in organisms]
     if not numbers:

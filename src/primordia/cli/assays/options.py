@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Callable, Mapping
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,6 +16,8 @@ from primordia.cli.paths import OutputPath
 from primordia.cli.table import show_table
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from primordia.api import Run
 
 after_option = click.option(
@@ -77,16 +80,17 @@ def tell(
         for arm, of in found.items():
             show_table(*table(arm, of))
     if out is not None:
+        draw = import_module(f"primordia.figures.assays.{name}").draw
         for arm, of in found.items():
             folder = out if len(found) == 1 else out / Path(arm).name
-            pictures = _drawn(name, of, folder)
-            click.echo(f"Figure: {' and '.join(map(str, pictures))}", err=as_json)
+            save_figure(partial(draw, of), folder, name, as_json)
 
 
-def _drawn(name: str, found: list[Any], folder: Path) -> list[Path]:
+def save_figure(draw: "Callable[[], Figure]", folder: Path, name: str, as_json: bool) -> None:
+    """Draw a figure into a folder, and print the names of its files, after JSON on stderr."""
     from primordia.figures import style
 
-    draw = import_module(f"primordia.figures.assays.{name}").draw
     files.make_folder(folder)
     with style.applied():
-        return style.save(draw(found), folder / name)
+        pictures = style.save(draw(), folder / name)
+    click.echo(f"Figure: {' and '.join(map(str, pictures))}", err=as_json)

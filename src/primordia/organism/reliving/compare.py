@@ -11,8 +11,7 @@ from primordia.organism import diary, replay, video
 from primordia.organism.reliving.course import Course, Value, recorded
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import checkpoint, directory
-from primordia.runs.archive import Archive
-from primordia.runs.arm import run_of
+from primordia.runs.archive import Archive, run_of
 from primordia.runs.arrays import Arrays, world_ticks
 from primordia.runs.records import Records, on_its_device
 

@@ -54,16 +54,14 @@ class Clock:
         return time.perf_counter() - self._began
 
     def left(self, status: CampaignStatus) -> float | None:
-        """Estimate, from the jobs done so far or under way, the seconds until all jobs are done."""
+        """Estimate the seconds until all jobs are done; None before this command has done a job."""
         done = status.jobs["done"]
         if self._done < 0:
             self._done = done
+        if done == self._done:
+            return None
         open_jobs = status.jobs["waiting"] + status.jobs["running"]
-        if done > self._done:
-            return self.seconds() / (done - self._done) * open_jobs
-        longest = max((entry.left_s or 0.0 for entry in status.running), default=0.0)
-        rounds = -(-open_jobs // max(len(status.running), 1))
-        return longest * rounds or None
+        return self.seconds() / (done - self._done) * open_jobs
 
 
 class _Paced:
@@ -113,12 +111,9 @@ def _jobs(status: CampaignStatus) -> str:
 
 
 def _arms(arms: tuple[ArmStatus, ...]) -> Table:
-    made = _table("arm", "worlds begun", "saturated", "ticks lived for each death (95 %)")
+    made = _table("arm", "worlds begun", "saturated", "ticks lived for each death")
     for arm in arms:
         life = "-" if arm.life is None else f"{arm.life:,.0f}"
-        if arm.life_interval is not None:
-            low, high = arm.life_interval
-            life += f" ({low:,.0f} to {high:,.0f})"
         made.add_row(arm.name, f"{arm.begun:,} of {arm.worlds:,}", f"{arm.saturated:,}", life)
     return made
 

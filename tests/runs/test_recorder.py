@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 import primordia
 from primordia.law.world import Cause
-from primordia.runs import loop, record
+from primordia.runs import loop, recorder
 from primordia.runs.archive import Archive
 from primordia.runs.digest import row_hashes
 from primordia.runs.schema import TABLES
@@ -65,7 +65,7 @@ def segments(run: Path, name: str) -> list[int]:
 def test_segments_of_any_size_hold_the_same_rows(
     lived: Lived, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, size: int
 ) -> None:
-    monkeypatch.setattr(record, "SEGMENT_ROWS", size)
+    monkeypatch.setattr(recorder, "SEGMENT_ROWS", size)
     run = recorded(tmp_path / "run")
     assert_all_rows(run, lived)
     assert [world["digest"] for world in run.info()["worlds"]] == lived.digests()
@@ -80,7 +80,7 @@ def test_segments_of_any_size_hold_the_same_rows(
 def test_tails_and_segments_together_hold_every_row(
     lived: Lived, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, size: int
 ) -> None:
-    monkeypatch.setattr(record, "SEGMENT_ROWS", size)
+    monkeypatch.setattr(recorder, "SEGMENT_ROWS", size)
     run = recorded(tmp_path / "run", interrupted_after=TICKS // 3)
     arrays = Archive(run.path).state
     for name in TABLES:
