@@ -3,15 +3,14 @@
 import json
 from collections.abc import Iterator
 from importlib.metadata import metadata
-from pathlib import Path
 from typing import Any
 
 import pytest
 from click.testing import CliRunner
 
-from primordia import compiled, device
+from primordia import compiled
 from primordia.cli.doctor import doctor
-from primordia.doctor import installed, memo, promises
+from primordia.doctor import installed, promises
 from primordia.doctor.promises import Trial
 
 
@@ -43,15 +42,9 @@ def test_the_promises_hold_here() -> None:
     assert [trial for trial in promises.trials() if trial.fault] == []
 
 
-@pytest.fixture
-def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
-    return tmp_path
-
-
 @pytest.mark.parametrize("fault", ["", "1a2b... alone, 3c4d... beside others"])
 def test_the_exit_status_says_whether_all_promises_hold(
-    fault: str, home: Path, monkeypatch: pytest.MonkeyPatch
+    fault: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def trials() -> Iterator[Trial]:
         yield Trial("chunks", "")
@@ -67,22 +60,3 @@ def test_the_exit_status_says_whether_all_promises_hold(
     assert [row["fault"] for row in result["trials"]] == ["", fault]
     assert result["facts"]["jax"]
     assert "mujoco" in result["extras"]
-
-
-VERSIONS = dict.fromkeys((*device.PACKAGES, "device", "instruction_set"), "9")
-
-
-def test_versions_that_were_never_tried_are_named_once(home: Path) -> None:
-    assert "primordia doctor" in memo.warning(VERSIONS)
-    assert memo.warning(VERSIONS) == ""
-    assert "primordia doctor" in memo.warning({**VERSIONS, "jax": "10"})
-
-
-def test_versions_that_were_tried_are_not_named(
-    home: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(device, "versions", lambda: VERSIONS)
-    memo.remember(passed=True)
-    assert memo.warning(VERSIONS) == ""
-    (home / "primordia" / "doctor.json").write_text("[damaged")
-    assert "primordia doctor" in memo.warning(VERSIONS)

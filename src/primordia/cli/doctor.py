@@ -15,7 +15,7 @@ def doctor(as_json: bool) -> None:
     promise does not hold here.
     """
     from primordia import device
-    from primordia.doctor import installed, memo, promises
+    from primordia.doctor import installed, promises
 
     device.prepare()
     facts, extras = installed.facts(), installed.extras()
@@ -35,7 +35,6 @@ def doctor(as_json: bool) -> None:
                 + (trial.fault and f": {trial.fault}")
             )
     passed = not any(trial.fault for trial in found)
-    memo.remember(passed)
     if as_json:
         rows = [
             {"name": trial.name, "holds": not trial.fault, "fault": trial.fault} for trial in found

@@ -69,7 +69,6 @@ def run(
     words, q saves and stops.
     """
     from primordia import api, config
-    from primordia.doctor import memo
 
     for name, value in take_limits(options).items():
         set_value(settings, f"stop.{name}", value)
@@ -79,8 +78,6 @@ def run(
     _drive(
         path, quiet, speed, lambda listen: api.run(task, path, settings, listen=listen, **options)
     )
-    if not quiet and (line := memo.warning(api.load(path).opened().versions)):
-        report(line)
 
 
 @click.command()
