@@ -71,9 +71,8 @@ class Atari(HostHabitat, Settings):
     workers: int | None = Field(
         None,
         ge=0,
-        description="number of emulator processes; 0: emulators in this process; lives do not depend"
-        " on it"
-        " (default: one for each core, 0 if there is one core)",
+        description="number of emulator processes, at most one for each cell; 0: emulators in this"
+        " process; lives do not depend on it (default: one for each core, 0 if there is one core)",
     )
 
     _pool: Pool = PrivateAttr()
@@ -159,14 +158,6 @@ class Atari(HostHabitat, Settings):
     def rate(self) -> float:
         """Ticks a second."""
         return FRAME_RATE / self.frame_skip
-
-    def check(self, cells: int) -> None:
-        """Raise ValueError if there are more workers than cells."""
-        if self.workers is not None and self.workers > cells:
-            raise ValueError(
-                f"workers: {self.workers} workers are more than the {cells} cells; use at most"
-                f" {cells}"
-            )
 
     def open(self, cells: int, watched: bool = False) -> None:
         """Make the emulators, with screens if they are watched."""
