@@ -63,7 +63,7 @@ def test_without_the_extra_the_error_says_what_to_install(
 ) -> None:
     import sys
 
-    for cached in (atari_games._ale, games, atari_games._facts, atari_games.legal_actions):
+    for cached in (atari_games._ale, games, atari_games.facts, atari_games.legal_actions):
         cached.cache_clear()
     monkeypatch.setitem(sys.modules, "ale_py", None)
     done = here("run", "Pong-survival", "--out", tmp_path / "run")

@@ -12,7 +12,7 @@ import pytest
 
 import primordia
 from primordia.habitats.atari import simulator
-from primordia.habitats.atari.games import screen_size
+from primordia.habitats.atari.games import facts
 from primordia.habitats.atari.habitat import SCALED, Atari
 from primordia.habitats.atari.picture import draw
 from primordia.habitats.framed import MARGIN
@@ -203,7 +203,7 @@ def test_some_games_have_larger_screens() -> None:
     habitat.reset(np.array([0, 1]), np.zeros((2, habitat.words), np.uint32))
     screens = habitat.seen()["screen"]
     habitat.close()
-    assert screens.shape == (2, *screen_size("pacman"), 3) == (2, 250, 160, 3)
+    assert screens.shape == (2, *facts("pacman").screen, 3) == (2, 250, 160, 3)
     assert screens.reshape(2, -1).any(axis=1).all()
     assert habitat.rate == 15
 

@@ -13,12 +13,7 @@ import numpy as np
 from pydantic import Field, PrivateAttr, field_validator, model_validator
 
 from primordia.habitats import conditions
-from primordia.habitats.atari.games import (
-    available_options,
-    legal_actions,
-    minimal_actions,
-    screen_size,
-)
+from primordia.habitats.atari.games import facts, legal_actions
 from primordia.habitats.atari.simulator import FIELDS, RAM, SCREEN
 from primordia.habitats.conditions import Expression, Names
 from primordia.habitats.contract import Discrete, HostHabitat, Outcome
@@ -91,13 +86,13 @@ class Atari(HostHabitat, Settings):
 
     @model_validator(mode="after")
     def _check_game(self) -> "Atari":
-        known = minimal_actions(self.game)
+        known = facts(self.game).actions
         if unknown := [name for name in self._action_names if name not in legal_actions()]:
             raise ValueError(
                 f"actions: there is no {', '.join(unknown)}; {self.game} takes {', '.join(known)}"
             )
         for option in ("mode", "difficulty"):
-            value, available = getattr(self, option), available_options(self.game)[option]
+            value, available = getattr(self, option), facts(self.game).options[option]
             if value is not None and value not in available:
                 raise ValueError(f"{option}: {self.game} has {available}, not {value}")
         assert self._fatal_condition
@@ -130,7 +125,7 @@ class Atari(HostHabitat, Settings):
     def _action_names(self) -> list[str]:
         """Names of the actions, in order."""
         if self.actions in ("minimal", "full"):
-            known = minimal_actions(self.game) if self.actions == "minimal" else legal_actions()
+            known = facts(self.game).actions if self.actions == "minimal" else legal_actions()
             return list(known)
         return self.actions.split()
 
@@ -161,7 +156,7 @@ class Atari(HostHabitat, Settings):
 
     def open(self, cells: int, watched: bool = False) -> None:
         """Make the emulators, with screens if they are watched."""
-        screen = {SCREEN: ("uint8", (*screen_size(self.game), 3))} if watched else {}
+        screen = {SCREEN: ("uint8", (*facts(self.game).screen, 3))} if watched else {}
         settings = {
             **self.model_dump(
                 include={"game", "mode", "difficulty", "frame_skip", "sticky", "noops"}
