@@ -7,7 +7,11 @@ import numpy as np
 
 from primordia.config import Config, load, validated
 from primordia.engine.engine import Engine
+from primordia.engine.state import State
+from primordia.law.genesis import begin, initial_looks
 from primordia.law.law import Law
+from primordia.law.world import World, Worlds
+from primordia.random.wide import wide
 from primordia.runs.digest import digests
 from primordia.runs.loop import recorder_for
 from primordia.settings.tables import merged
@@ -92,6 +96,23 @@ def law_of(base: str | dict[str, Any] = "CartPole-survival", **settings: Any) ->
     return made.build_law(made.build_habitat())
 
 
+def begun(law: Law, seeds: np.ndarray, tick: int = 0, births: int = 0) -> World:
+    """Return worlds without organisms, with these counts of ticks and births."""
+    organisms, worlds = begin(law, seeds)
+    return World(organisms, late_worlds(law, worlds, tick, births))
+
+
+def late_worlds(law: Law, worlds: Worlds, tick: int, births: int) -> Worlds:
+    """Return the counts of worlds as if they had lived for some ticks, with some births."""
+    count = law.worlds
+    return worlds._replace(
+        tick=wide(np.full(count, tick, np.uint64)),
+        births=wide(np.full(count, births, np.uint64)),
+        sample_wait=jnp.full(count, law.sample_every - tick % law.sample_every, jnp.int32),
+        looks=initial_looks(law, count, tick),
+    )
+
+
 class Lived:
     """A run in memory, advanced to some tick, with its records."""
 
@@ -106,7 +127,9 @@ class Lived:
         """`start`: the counts of ticks and births that the run starts at."""
         self.config, self.engine, self.start = config, Engine(config), start
         if any(start):
-            self.engine.state = self.engine.chunks.begin(config.world_seeds, *start)
+            world, bodies = self.engine.state
+            late = World(world.organisms, late_worlds(self.engine.law, world.worlds, *start))
+            self.engine.state = State(late, bodies)
         self.recorder = recorder_for(self.engine, None)
         self.rows: dict[str, list[np.ndarray]] = {"births": [], "deaths": [], "metrics": []}
         self.advance_to(ticks, chunk, **stop)

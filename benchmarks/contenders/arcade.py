@@ -99,11 +99,11 @@ class Published(Loop):
     about = "one Python object an organism, NumPy, one process"
 
     def __init__(self, game: str, cells: int) -> None:
-        from primordia.habitats.atari.games import minimal_actions
+        from primordia.habitats.atari.games import facts
         from primordia.habitats.atari.simulator import console
 
         config, habitat, law = described(game)
-        buttons, seen = list(minimal_actions(game).values()), _seen(habitat)
+        buttons, seen = list(facts(game).actions.values()), _seen(habitat)
         hidden, noise = config.brain["hidden"], np.random.default_rng(0)
         shapes = ((hidden, len(seen)), (hidden, hidden), (len(buttons), hidden))
         blocks = list(zip(scales(law), shapes, strict=True))

@@ -298,10 +298,6 @@ def _check(config: Config) -> None:
     if (cells := config.cells * config.seeds) > 2**26:
         says = f"{cells} cells are more than 2^26; spread them over several runs"
         raise InputError(f"cells x seeds: {says}")
-    try:
-        habitat.check(cells)
-    except ValueError as error:
-        raise InputError(f"habitat: {error}") from None
     _check_own_code(config, habitat)
     continuous = any(isinstance(part, Continuous) for part in habitat.action.parts)
     if config.motor.kind == "gaussian" and not continuous:

@@ -16,14 +16,14 @@ OF_XLA = "NPROC"
 
 
 def count() -> int:
-    """Return the number in PRIMORDIA_CORES; without it, the number of `available` cores.
+    """Return the number in PRIMORDIA_CORES; without it, the number that the system grants.
 
     Raises:
         InputError: PRIMORDIA_CORES is not a number of cores.
     """
     given = os.environ.get(VARIABLE)
     if given is None:
-        return available()
+        return len(os.sched_getaffinity(0))
     if not (given.isascii() and given.isdecimal() and int(given)):
         raise InputError(f"{VARIABLE} must be a number of cores, 1 or more, not {given!r}")
     return int(given)
@@ -39,11 +39,6 @@ def one_unless_given() -> Iterator[None]:
     finally:
         if not given:
             del os.environ[VARIABLE]
-
-
-def available() -> int:
-    """Return the number of cores that the system lets this process use."""
-    return len(os.sched_getaffinity(0))
 
 
 def limit_threads() -> None:

@@ -167,9 +167,11 @@ def test_check_names_faults_of_the_environment_and_breaches_of_the_contract(
         if broken:
             raise testing.ContractError(broken)
 
-    monkeypatch.setattr(doors, "report", lambda env: (["a fact", "another"], list(faults)))
+    env = "gymnax:tests.walks:Choice"
+    task = doors.task(env)._replace(facts=["a fact", "another"], faults=faults)
+    monkeypatch.setattr(doors, "task", lambda env: task)
     monkeypatch.setattr(testing, "check_habitat", check_habitat)
-    done = here("check", "gymnax:tests.walks:Choice")
+    done = here("check", env)
     found = [*faults, *([broken] if broken else [])]
     assert done.returncode == (1 if found else 0)
     lines = ["a fact", "another", *(f"Found: {fault}." for fault in found)]

@@ -5,8 +5,6 @@ from typing import Any
 
 import pytest
 
-from primordia.config import load
-from primordia.errors import InputError
 from primordia.habitats.atari import games as atari_games
 from primordia.habitats.atari.games import games
 from primordia.habitats.atari.habitat import Atari
@@ -51,7 +49,6 @@ def test_actions_are_those_that_the_settings_name(
         (["--habitat.mode", "77"], "mode: pong has [0, 1], not 77"),
         (["--habitat.difficulty", "9"], "difficulty: pong has [0, 1, 2, 3], not 9"),
         (["--habitat.sticky", "1.5"], "habitat.sticky"),
-        (["--habitat.workers", "9", "--cells", "8"], "9 workers are more than the 8 cells"),
     ],
 )
 def test_wrong_settings_are_errors_that_say_why(
@@ -61,20 +58,12 @@ def test_wrong_settings_are_errors_that_say_why(
     assert not (tmp_path / "run").exists()
 
 
-def test_all_worlds_of_a_run_share_the_workers() -> None:
-    settings: Any = {"cells": 4, "seeds": 3, "habitat": {"workers": 12}}
-    assert load("Pong-survival", settings).build_habitat().workers == 12
-    settings["habitat"]["workers"] = 13
-    with pytest.raises(InputError, match="13 workers are more than the 12 cells"):
-        load("Pong-survival", settings)
-
-
 def test_without_the_extra_the_error_says_what_to_install(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     import sys
 
-    for cached in (atari_games._ale, games, atari_games._facts, atari_games.legal_actions):
+    for cached in (atari_games._ale, games, atari_games.facts, atari_games.legal_actions):
         cached.cache_clear()
     monkeypatch.setitem(sys.modules, "ale_py", None)
     done = here("run", "Pong-survival", "--out", tmp_path / "run")

@@ -95,12 +95,6 @@ class Stranger(Still):
     senses_size, action, words = 1, Discrete(2), 1
 
 
-class Crowded(Plain):
-    def check(self, cells: int) -> None:
-        if cells > 8:
-            raise ValueError(f"{cells} cells are too many")
-
-
 def built(name: str, **options: Any) -> Any:
     habitat = {"name": f"{__name__}:{name}", **options}
     return validated({**MEADOW, "habitat": habitat}, source="here").build_habitat()
@@ -149,7 +143,6 @@ def test_a_plain_habitat_has_the_defaults() -> None:
     assert (meadow.versions, meadow.tallies) == ({}, ())
     assert meadow.caption(None, np.array([0.5, 1.25])) == "action [0.5  1.25]"
     assert HostCartPole().seen() is None
-    meadow.check(10**6)
 
 
 @pytest.mark.parametrize(
@@ -171,7 +164,6 @@ def test_organisms_live_in_habitats_of_every_form(name: str, options: dict[str, 
         ("Senseless", ["Senseless is not a complete habitat: it has no 'senses_size'"]),
         ("Proud", ["Proud has tallies", "HostHabitat that defines tally()"]),
         ("Nameless", ["Nameless has tallies", "tally()"]),
-        ("Crowded", ["habitat: 16 cells are too many"]),
         ("Configured", ["habitat.episode is missing"]),
     ],
 )

@@ -135,13 +135,6 @@ def test_info_is_read_if_a_single_setting_names_it(setting: str) -> None:
     game.close()
 
 
-def test_there_are_at_most_as_many_workers_as_cells() -> None:
-    crowd = Gymnasium(env="tests.ponds:Pond-v0", workers=3)
-    crowd.check(3)
-    with pytest.raises(ValueError, match="3 workers are more than the 2 cells; use at most 2"):
-        crowd.check(2)
-
-
 def test_a_fault_leaves_its_message_and_no_results() -> None:
     made, arrays = environments(a=1)
     for name in ("reward", "food", "terminated", "truncated", "info"):

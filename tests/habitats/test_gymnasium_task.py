@@ -14,7 +14,7 @@ from primordia.habitats.gymnasium import check, environment, probe, task
 from primordia.habitats.gymnasium.check import Measured
 from primordia.habitats.gymnasium.habitat import Gymnasium
 from primordia.habitats.gymnasium.probe import LONGEST, PICTURES_S, _numbers
-from primordia.settings.doors import replication
+from primordia.settings.doors import settings
 from tests.ponds import Pond, noted_seeds
 
 
@@ -155,9 +155,9 @@ def test_a_task_has_the_settings_that_were_measured(
     monkeypatch.setattr(check, "measure", lambda *given: found)
     monkeypatch.setattr(task, "_scale", lambda env: [1.0, 50.0])
     monkeypatch.setattr(task, "_facts", lambda *given: [given[0], given[2], given[3]])
-    table, facts, faults = task._measured.__wrapped__("tests.ponds:ponds/Pond-v0")
+    table, facts, faults = task.task.__wrapped__("tests.ponds:ponds/Pond-v0")
     assert (facts, faults) == (["tests.ponds:ponds/Pond-v0", found, {"age": 0}], ["a fault"])
-    assert (table["task"], table["replication"]) == ("ponds-Pond-v0", replication(100.0))
+    assert (table["task"], table["replication"]) == ("ponds-Pond-v0", 0.01)
     assert table["about"] == "Gymnasium's tests.ponds:ponds/Pond-v0: live until it terminates"
     own = {"name": "gymnasium", "env": "tests.ponds:ponds/Pond-v0", "fatal": "terminated"}
     optional = ({"fresh": True} if fresh else {}) | ({} if bounds else {"scale": [1.0, 50.0]})
@@ -171,7 +171,7 @@ def test_a_task_has_the_settings_that_were_measured(
 def test_an_organism_replicates_about_once_in_a_random_life(
     lifespan: float, expected: float
 ) -> None:
-    assert replication(lifespan) == expected
+    assert settings("", lifespan, {"env": "Pond-v0"})["replication"] == expected
 
 
 @pytest.mark.parametrize("ended", [0, 1])

@@ -29,8 +29,9 @@ def replace_measurement(monkeypatch: pytest.MonkeyPatch, **found: Any) -> None:
         simulator=SimpleNamespace(limits=found.pop("limits", [])),
         senses=SimpleNamespace(unbounded=lambda: np.array([True, True, False])),
     )
-    table = habitat, Measured(**{**own, **found})
-    monkeypatch.setattr(task, "_measured", lambda env: table)
+    monkeypatch.setattr(task, "make", lambda *given: habitat)
+    monkeypatch.setattr(task, "Gymnax", SimpleNamespace)
+    monkeypatch.setattr(task, "measure", lambda of: Measured(**{**own, **found}))
 
 
 @pytest.mark.parametrize(
@@ -45,7 +46,7 @@ def test_the_facts_of_an_environment_have_its_figures(
     monkeypatch: pytest.MonkeyPatch, action: Any, shown: str
 ) -> None:
     replace_measurement(monkeypatch, action=action)
-    facts, faults = task.report("any:Env")
+    _, facts, faults = task.task.__wrapped__("any:Env")
     assert facts == [
         "Observation: 3 numbers, obs[0] to obs[2] in conditions.",
         f"Action: {shown}.",
@@ -57,7 +58,7 @@ def test_the_facts_of_an_environment_have_its_figures(
     ]
     assert faults == ["a fault"]
     replace_measurement(monkeypatch, ended=0, limits=["max_steps", "max_time"])
-    facts, _ = task.report("any:Env")
+    _, facts, _ = task.task.__wrapped__("any:Env")
     assert facts[4].startswith("The environment's time limit (max_steps, max_time) is off;")
     assert facts[6].startswith("None of 32 lives ended in 500 ticks of random play:")
 
@@ -70,7 +71,7 @@ def test_senses_are_squashed_if_a_number_without_bounds_is_large(
     monkeypatch: pytest.MonkeyPatch, largest: list[float], squash: bool
 ) -> None:
     replace_measurement(monkeypatch, largest=np.float32(largest), lifespan=50.0)
-    table = task.values("any:Env")
+    table, _, _ = task.task.__wrapped__("any:Env")
     own = {"name": "gymnax", "env": "any:Env", "fatal": "done"}
     assert table["habitat"] == own | ({"squash": True} if squash else {})
     assert (table["task"], table["about"]) == ("Env", "any:Env: live until it is done")

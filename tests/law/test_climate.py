@@ -8,13 +8,12 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from primordia.law.genesis import begin
 from primordia.law.law import Law
 from primordia.law.metabolism import ONE, Rates
 from primordia.law.seasons import apply_seasons, ratchets
 from primordia.law.world import World, Worlds
 from primordia.random.wide import to_host, wide
-from tests.worlds import MEADOW, law_of
+from tests.worlds import MEADOW, begun, law_of
 
 W, N, TICK = 3, 8, 40
 
@@ -31,7 +30,7 @@ def meadow_law(*seasons: dict[str, Any], **values: Any) -> Law:
 
 def posed(law: Law, wait: list[list[int]], **looks: Any) -> World:
     """Return worlds of 4, 5 and 6 organisms of age 10, with other values for their looks."""
-    world = begin(law, np.arange(W, dtype=np.uint64), tick=TICK)
+    world = begun(law, np.arange(W, dtype=np.uint64), tick=TICK)
     alive = np.arange(N) < np.array([4, 5, 6])[:, None]
     organisms = world.organisms._replace(alive=alive.ravel(), born=wide(np.full(W * N, TICK - 10)))
     worlds = world.worlds._replace(

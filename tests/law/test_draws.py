@@ -6,14 +6,13 @@ The five births are written in batches of two, and the last batch is padded.
 import numpy as np
 import pytest
 
-from primordia.law.genesis import begin
 from primordia.law.law import Law
 from primordia.law.world import BirthCause, World
 from primordia.random.keys import Purpose
 from primordia.random.wide import to_host, wide
 from tests.law.test_placement import one_after_another
 from tests.law.turning import Turned, drawn, numbered, turned
-from tests.worlds import MEADOW, law_of
+from tests.worlds import MEADOW, begun, law_of
 
 W, N, TICK = 2, 256, 30
 SEEDS = [4, 2**40]
@@ -36,7 +35,7 @@ def posed() -> tuple[Law, World]:
         placement={"topology": "well-mixed", "rule": "empty-only"}, recombination={"unit": "row"},
         mutation={"scale": 0.0},
     )  # fmt: skip
-    organisms, worlds = begin(law, np.array(SEEDS, np.uint64), tick=TICK)
+    organisms, worlds = begun(law, np.array(SEEDS, np.uint64), tick=TICK)
     alive = np.ones((W, N), bool)
     for world, cells in enumerate(EMPTY):
         alive[world, cells] = False

@@ -6,12 +6,12 @@ import jax
 import numpy as np
 import pytest
 
-from primordia.law.genesis import begin, birth_words, body_words
+from primordia.law.genesis import birth_words, body_words
 from primordia.law.world import ages, ages_total
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import to_host, wide
 from tests.law.turning import drawn
-from tests.worlds import MEADOW, law_of
+from tests.worlds import MEADOW, begun, law_of
 
 RATCHETS = [
     {"kind": "ratchet", "setting": "replication", "when": "food", "above": 0.1, "factor": 0.5,
@@ -27,7 +27,7 @@ def test_worlds_begin_at_their_tick_and_wait_until_the_next_multiples(
     at = {"kind": "schedule", "setting": "hazard", "at": 50, "value": 0.5}
     seasons = [RATCHETS[0], at, *RATCHETS[1:]]
     law = law_of(MEADOW, cells=4, seeds=2, sample_every=15, seasons=seasons, hazard=0.125)
-    organisms, worlds = begin(law, np.array([8, 2**63], np.uint64), tick, births)
+    organisms, worlds = begun(law, np.array([8, 2**63], np.uint64), tick, births)
     assert to_host(worlds.seed).tolist() == [8, 2**63]
     assert to_host(worlds.tick).tolist() == [tick] * 2
     assert to_host(worlds.births).tolist() == [births] * 2
@@ -46,7 +46,7 @@ def test_worlds_begin_at_their_tick_and_wait_until_the_next_multiples(
 def test_bodies_get_the_words_of_their_world_tick_and_cell(words: int) -> None:
     """The high words of all draws are first, then the low words. The last low word is left out if odd."""
     law = law_of(MEADOW, cells=3, seeds=2)
-    worlds = begin(law, np.array([8, 2**63], np.uint64), tick=9).worlds
+    worlds = begun(law, np.array([8, 2**63], np.uint64), tick=9).worlds
     birth = jax.jit(partial(birth_words, law, words=words))
     found = np.asarray(birth(worlds, np.True_))
     assert found.shape == (6, words)
@@ -65,7 +65,7 @@ def test_bodies_get_the_words_of_their_world_tick_and_cell(words: int) -> None:
 
 def test_ages_are_those_of_the_living_and_add_up_by_world() -> None:
     law = law_of(MEADOW, cells=3, seeds=2)
-    world = begin(law, np.array([1, 2], np.uint64), tick=2**32 + 10)
+    world = begun(law, np.array([1, 2], np.uint64), tick=2**32 + 10)
     alive = np.array([True, False, True, True, True, False])
     born = wide([0, 0, 2**32 + 10, 2**32 + 9, 2**32 - 5, 3])
     tick = wide([2**32 + 10, 2**32 + 20])

@@ -10,7 +10,6 @@ from jax import Array
 
 from primordia.brains.layout import Layout
 from primordia.compiled import shared
-from primordia.law.genesis import begin
 from primordia.law.heredity import Birth, Heredity, Newborn
 from primordia.law.recombination import Recombination
 from primordia.mutations.contract import PURPOSES, Change, Draws, Family
@@ -18,7 +17,7 @@ from primordia.mutations.gaussian import Gaussian
 from primordia.random.keys import Purpose, streams
 from primordia.random.wide import wide
 from tests.mutations.families import inherited
-from tests.worlds import MEADOW, law_of
+from tests.worlds import MEADOW, begun, law_of
 
 LAYOUT = Layout((("input", (3, 2)), ("output", (2, 3))))
 ANCESTORS = np.arange(5 * 12, dtype=np.float32).reshape(5, 12)
@@ -125,7 +124,7 @@ def test_empty_cells_of_a_new_world_have_the_notes_of_founders() -> None:
     """A child may take the notes of its cell."""
     law = law_of(MEADOW, cells=3, seeds=2)
     law = replace(law, heredity=replace(law.heredity, mutation=Noted()))
-    assert begin(law, np.arange(2, dtype=np.uint64)).organisms.notes.tolist() == [[3, -1]] * 6
+    assert begun(law, np.arange(2, dtype=np.uint64)).organisms.notes.tolist() == [[3, -1]] * 6
 
 
 def test_only_a_child_with_a_mate_has_weights_of_the_mate() -> None:

@@ -13,7 +13,6 @@ import pytest
 from primordia.habitats import Compound, Continuous, Discrete, Outcome
 from primordia.habitats.contract import Action
 from primordia.law import life, tick
-from primordia.law.genesis import begin
 from primordia.law.law import Law
 from primordia.law.life import Thought, Vitals
 from primordia.law.metabolism import ONE, Rates
@@ -24,7 +23,7 @@ from primordia.random.gaussian import quantiles
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import Wide, to_host, wide
 from tests.law.turning import drawn as of_cells
-from tests.worlds import MEADOW, law_of
+from tests.worlds import MEADOW, begun, law_of
 
 RATES = Rates(*(np.float32(value) for value in (10, 1, 1, 1, 1e6)))
 
@@ -153,7 +152,7 @@ def test_the_gaussian_motor_leaves_choices_alone() -> None:
 
 
 def a_world(alive: np.ndarray, hazard: list[float], replication: list[float]) -> World:
-    world = begin(meadow_law(), np.array([5, 2**40], np.uint64), tick=9)
+    world = begun(meadow_law(), np.array([5, 2**40], np.uint64), tick=9)
     climate = world.worlds.climate | {
         "hazard": np.float32(hazard),
         "replication": np.float32(replication),

@@ -3,10 +3,9 @@
 import jax
 import numpy as np
 
-from primordia.law.genesis import begin
 from primordia.law.world import World
 from tests.law.turning import turned
-from tests.worlds import MEADOW, law_of
+from tests.worlds import MEADOW, begun, law_of
 
 
 def test_a_calibrated_mutation_is_measured_against_the_recombined_genome() -> None:
@@ -21,7 +20,7 @@ def test_a_calibrated_mutation_is_measured_against_the_recombined_genome() -> No
         recombination={"unit": "block"},
         mutation={"kind": "calibrated", "probability": 1.0, "differs": 0.0, "remembered": 2},
     )  # fmt: skip
-    organisms, counts = begin(law, np.arange(worlds, dtype=np.uint64), tick=9)
+    organisms, counts = begun(law, np.arange(worlds, dtype=np.uint64), tick=9)
     of_parent, of_mate = np.float32([[1, 0], [1, 0]]), np.float32([[0, 1], [0, 1]])
     genome = np.tile([of_parent, np.zeros((2, 2), np.float32), of_mate], (worlds, 1, 1))
     known = jax.tree.map(np.ones_like, organisms.moments)

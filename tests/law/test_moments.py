@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 
 from primordia.habitats import Compound, Continuous, Discrete
-from primordia.law.genesis import begin
 from primordia.law.law import Law
 from primordia.law.moments import change_in, remember
 from primordia.law.world import Remembered, World
 from primordia.random.wide import wide
-from tests.worlds import MEADOW, MILL, law_of
+from tests.worlds import MEADOW, MILL, begun, law_of
 
 KEPT, EVERY = 4, 3
 MUTATION = {"kind": "calibrated", "remembered": KEPT, "every": EVERY, "founder_scale": 0.5}
@@ -23,7 +22,7 @@ MUTATION = {"kind": "calibrated", "remembered": KEPT, "every": EVERY, "founder_s
 def test_a_moment_is_stored_only_in_worlds_that_ran_to_a_tick_of_moments() -> None:
     """A moment is due in worlds 0 and 3. World 1 is between two such ticks, and world 2 has stopped."""
     law = law_of(MEADOW, cells=2, seeds=4, mutation=MUTATION)
-    organisms, worlds = begin(law, np.arange(4, dtype=np.uint64))
+    organisms, worlds = begun(law, np.arange(4, dtype=np.uint64))
     alive = np.array([1, 1, 1, 1, 1, 1, 1, 0], bool)
     before = jax.tree.map(lambda leaf: np.full(leaf.shape, -5, leaf.dtype), organisms.moments)
     before = before._replace(known=np.arange(KEPT) < np.ones((8, 1)))

@@ -3,13 +3,12 @@
 import numpy as np
 import pytest
 
-from primordia.law.genesis import begin
 from primordia.law.world import Cause
 from primordia.random.keys import Purpose
 from primordia.random.wide import wide
 from tests.law.test_placement import one_after_another
 from tests.law.turning import Turned, drawn, numbered, turned
-from tests.worlds import MEADOW, law_of
+from tests.worlds import MEADOW, begun, law_of
 
 N, SEED, TICK = 12, 18, 30
 CAUSES = np.array([-1, 1, -1, 0, -1, 2, -1, 5, -1, 4, -1, -1])
@@ -30,7 +29,7 @@ def tick() -> Turned:
         MEADOW, cells=N, placement={"topology": "well-mixed", "rule": "replacing"},
         mutation={"probability": 0.0}, recombination={"unit": "row"}, brain={"kind": "linear"},
     )  # fmt: skip
-    world = begin(law, np.array([SEED], np.uint64), tick=TICK)
+    world = begun(law, np.array([SEED], np.uint64), tick=TICK)
     organisms = world.organisms._replace(
         alive=ALIVE,
         number=wide(np.arange(N) + 100),

@@ -12,13 +12,12 @@ from pydantic import TypeAdapter, ValidationError
 import primordia
 from primordia.errors import InputError
 from primordia.habitats.contract import Habitat, HostHabitat
-from primordia.law.genesis import begin
 from primordia.law.law import Law
 from primordia.law.metabolism import break_even
 from primordia.law.seasons import Ratchet, Season, apply_seasons
 from primordia.law.world import World, Worlds
 from tests.chronicle import History
-from tests.worlds import MEADOW, MILL, Lived, config
+from tests.worlds import MEADOW, MILL, Lived, begun, config
 
 
 def schedule(setting: str, at: int, value: float) -> dict[str, Any]:
@@ -211,7 +210,7 @@ def test_two_equal_ratchets_both_turn() -> None:
     """Each looks on its own; neither stops the other."""
     twin = ratchet("metabolism.gain", "saturation", 0.5, 0.5, 10)
     law, _ = law_of([twin, twin])
-    world = begin(law, np.array([1, 2]))
+    world = begun(law, np.array([1, 2]))
     full = np.arange(32) < 16
     looks = world.worlds.looks._replace(wait=np.zeros((2, 2), np.int32))
     world = world._replace(
@@ -227,7 +226,7 @@ def test_a_world_that_has_stopped_has_no_seasons() -> None:
     law, _ = law_of(
         [ratchet("replication", "saturation", 0.0, 0.5, 10), schedule("hazard", 7, 0.5)]
     )
-    world = begin(law, np.array([1, 2]), tick=7)
+    world = begun(law, np.array([1, 2]), tick=7)
     looks = world.worlds.looks._replace(wait=np.zeros((2, 1), np.int32))
     alive = np.ones(32, bool)
     world = world._replace(

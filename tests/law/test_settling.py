@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from primordia.law import events as log
-from primordia.law.genesis import begin
 from primordia.law.law import Law
 from primordia.law.metabolism import ONE
 from primordia.law.moments import moment_due, until_due
@@ -18,7 +17,7 @@ from primordia.law.tick import no_fates
 from primordia.law.world import World
 from primordia.mutations.contract import Moments
 from primordia.random.wide import to_host, wide
-from tests.worlds import MEADOW, law_of
+from tests.worlds import MEADOW, begun, law_of
 
 W, N = 3, 4
 FAR = 2**31 - 1
@@ -43,7 +42,7 @@ def meadow_law(moments: bool = False) -> Law:
 
 def posed(law: Law, tick: int = 500, **worlds: Any) -> World:
     """Return full worlds at a tick, saturated at tick 7, with other values for some of their arrays."""
-    world = begin(law, np.arange(W, dtype=np.uint64), tick=tick)
+    world = begun(law, np.arange(W, dtype=np.uint64), tick=tick)
     known = {"calm": [100] * W, "saturated": wide([7] * W), "saturated_births": wide([3] * W)}
     arrays = {
         name: value if isinstance(value, tuple) else np.asarray(value, np.int32)

@@ -6,14 +6,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from primordia.law.genesis import begin
 from primordia.law.law import Law
 from primordia.law.metabolism import ONE
 from primordia.law.world import BirthCause, Cause, World
 from primordia.random.keys import Purpose
 from primordia.random.wide import to_host, wide
 from tests.law.turning import drawn, numbered, turned
-from tests.worlds import MEADOW, law_of
+from tests.worlds import MEADOW, begun, law_of
 
 DYING, FIRST, STOPPED, LOSING, QUIET, BEARING = range(6)
 W, N, TICK = 6, 4, 50
@@ -47,7 +46,7 @@ def meadow_law() -> Law:
 
 def posed() -> tuple[Law, World]:
     law = meadow_law()
-    world = begin(law, np.arange(W, dtype=np.uint64), tick=TICK)
+    world = begun(law, np.arange(W, dtype=np.uint64), tick=TICK)
     worlds = world.worlds._replace(
         **{name: wide(values) for name, values in BEGUN.items()},
         calm=np.full(W, 8, np.int32),
@@ -170,7 +169,7 @@ def test_a_mate_is_a_neighbour_in_the_childs_world_that_survives_the_tick() -> N
     A note is minus this number. A note that belongs to a cell is that of the cell's last organism.
     """
     law = meadow_law()
-    world = begin(law, np.arange(W, dtype=np.uint64), tick=9)
+    world = begun(law, np.arange(W, dtype=np.uint64), tick=9)
     alive, wants, cause = np.ones((W, N), bool), np.zeros((W, N), bool), np.full((W, N), -1)
     alive[3] = False
     for w in (0, 1, 2, 4):
@@ -183,8 +182,8 @@ def test_a_mate_is_a_neighbour_in_the_childs_world_that_survives_the_tick() -> N
         genome=numbered(world.organisms.genome, numbers),
         notes=np.broadcast_to(-numbers[:, None], world.organisms.notes.shape),
     )
-    begun = world.worlds._replace(births=wide([1000] * W))
-    organisms, _, _, births, _ = turned(law, World(organisms, begun), wants, cause)
+    counted = world.worlds._replace(births=wide([1000] * W))
+    organisms, _, _, births, _ = turned(law, World(organisms, counted), wants, cause)
     assert len(births["cell"]) == 5
     for w in range(5):
         cell = births["cell"][w]

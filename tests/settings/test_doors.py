@@ -27,9 +27,9 @@ def test_a_name_without_a_door_gets_that_of_gymnasium(name: str, full: str, behi
 @pytest.mark.parametrize(
     ("env", "asked"),
     [
-        ("gymnax:Catch", ("primordia.habitats.gymnax.task", "Catch")),
-        ("Pond-v0", ("primordia.habitats.gymnasium.task", "Pond-v0")),
-        ("my.ponds:Pond-v0", ("primordia.habitats.gymnasium.task", "my.ponds:Pond-v0")),
+        ("gymnax:Catch", ("primordia.habitats.gymnax.task:task", "Catch")),
+        ("Pond-v0", ("primordia.habitats.gymnasium.task:task", "Pond-v0")),
+        ("my.ponds:Pond-v0", ("primordia.habitats.gymnasium.task:task", "my.ponds:Pond-v0")),
     ],
 )
 def test_a_task_file_has_the_facts_then_the_faults_then_the_settings(
@@ -37,21 +37,19 @@ def test_a_task_file_has_the_facts_then_the_faults_then_the_settings(
 ) -> None:
     table = {"task": "pond", "habitat": {"name": "gymnasium", "fatal": "obs[0] > 7"}}
     facts = ["Seven senses.", " ".join(["word"] * 60)]
-    answers = {"values": table, "report": (facts, ["it sinks", "it leaks"])}
+    task = doors.Task(table, facts, ["it sinks", "it leaks"])
     calls = []
 
     def load(what: str, path: str, known: dict[str, str]) -> object:
-        module, _, function = path.partition(":")
-
         def answer(name: str) -> object:
-            calls.append((what, module, name))
-            return answers[function]
+            calls.append((what, path, name))
+            return task
 
         return answer
 
     monkeypatch.setattr(parts, "load", load)
     text = doors.text(env)
-    assert calls == [("door", *asked)] * 2
+    assert calls == [("door", *asked)]
     assert tomllib.loads(text) == table
     comments, _, _ = text.partition("\n\n")
     lines = comments.splitlines()

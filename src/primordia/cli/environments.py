@@ -42,8 +42,8 @@ def check(env: str) -> None:
     """
     from primordia.settings import doors
 
-    facts, faults = doors.report(env)
-    faults += _broken_contract(env)
+    _, facts, faults = doors.task(env)
+    faults = [*faults, *_broken_contract(env)]
     click.echo("\n".join([*facts, *(f"Found: {fault}." for fault in faults)]))
     if faults:
         raise click.exceptions.Exit(1)

@@ -31,9 +31,9 @@ class FusedChunks:
         self.events = log.empty(law)
         """events of the latest chunk"""
 
-    def begin(self, seeds: np.ndarray, tick: int = 0, births: int = 0) -> State:
-        """Return the state of a run before genesis; see `genesis.begin`."""
-        world = begin(self._law, seeds, tick, births)
+    def begin(self, seeds: np.ndarray) -> State:
+        """Return the state of a run before genesis, from the worlds' seeds, uint64 (W,)."""
+        world = begin(self._law, seeds)
         return State(world, placeholder_bodies(self._habitat, len(world.organisms.alive)))
 
     def advance(self, state: State, limits: Limits, ticks: int) -> tuple[State, int]:

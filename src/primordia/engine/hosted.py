@@ -38,9 +38,9 @@ class HostedChunks:
         """events of the latest chunk"""
         habitat.open(law.worlds * law.cells)
 
-    def begin(self, seeds: np.ndarray, tick: int = 0, births: int = 0) -> State:
-        """Return the state of a run before genesis; see `genesis.begin`."""
-        world = begin(self._law, seeds, tick, births)
+    def begin(self, seeds: np.ndarray) -> State:
+        """Return the state of a run before genesis, from the worlds' seeds, uint64 (W,)."""
+        world = begin(self._law, seeds)
         self._no_fates = no_fates(self._law)
         self._calls = Calls(self._law, Form.of(world), self._habitat.words)
         cells = len(world.organisms.alive)

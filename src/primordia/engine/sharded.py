@@ -50,10 +50,9 @@ class ShardedChunks(FusedChunks):
         self._lists: Events = shared(_empty, mesh, self._share)()
         self.events = self._joined()
 
-    def begin(self, seeds: np.ndarray, tick: int = 0, births: int = 0) -> State:
+    def begin(self, seeds: np.ndarray) -> State:
         """Return the state of a run before genesis; no device holds more than its share."""
-        begin = shared(_begin, self._split.mesh, self._share, self._habitat, tick, births)
-        return begin(wide(seeds))
+        return shared(_begin, self._split.mesh, self._share, self._habitat)(wide(seeds))
 
     def advance(self, state: State, limits: Limits, ticks: int) -> tuple[State, int]:
         """Advance by at most `ticks`, fewer if every world stops or the lists are full.
@@ -108,10 +107,10 @@ def _on_each(mesh: Mesh, function: Callable, *given: PartitionSpec | tuple) -> C
     return jax.shard_map(function, mesh=mesh, in_specs=given, out_specs=SPLIT, check_vma=False)
 
 
-def _begin(mesh: Mesh, law: Law, habitat: JaxHabitat, tick: int, births: int, seed: Wide) -> State:
+def _begin(mesh: Mesh, law: Law, habitat: JaxHabitat, seed: Wide) -> State:
     def on_one(seed: Wide) -> State:
         bodies = placeholder_bodies(habitat, law.worlds * law.cells)
-        return State(empty_worlds(law, tick, births, seed), bodies)
+        return State(empty_worlds(law, seed), bodies)
 
     return _on_each(mesh, on_one, SPLIT)(seed)
 

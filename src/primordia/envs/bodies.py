@@ -15,7 +15,6 @@ from primordia.law import life
 from primordia.law.genesis import body_words
 from primordia.law.life import Vitals
 from primordia.law.metabolism import ONE, Rates, to_fixed_point
-from primordia.law.world import Cause
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
 
@@ -45,7 +44,7 @@ class Bodies:
         self._judge = shared(life.judge, self.law)
         self._sound = jnp.zeros(count, bool)
         self._store = np.asarray(to_fixed_point(jnp.asarray(self._rates.store)))
-        self._vitals = _vitals(self._store, np.zeros(count, np.int32))
+        self._vitals = Vitals._make((self._store, np.zeros(count, np.int32)))
         self.senses = np.zeros((count, habitat.senses_size), np.float32)
         """float32 (N, S)"""
 
@@ -68,7 +67,7 @@ class Bodies:
         self.senses[cells] = self.habitat.reset(cells, np.asarray(words))
         energy, eaten = (np.array(each) for each in self._vitals)
         energy[cells], eaten[cells] = self._store[cells], 0
-        self._vitals = _vitals(energy, eaten)
+        self._vitals = Vitals._make((energy, eaten))
 
     def step(self, action: np.ndarray, alive: np.ndarray) -> np.ndarray:
         """Live one tick in the living cells; `alive` is bool (N,).
@@ -81,22 +80,12 @@ class Bodies:
         vitals, cause = self._judge(self._vitals, self._sound, senses, outcome, self._rates)
         self.senses = np.where(alive[:, None], senses, self.senses).astype(np.float32)
         kept = (np.where(alive, new, old) for new, old in zip(vitals, before, strict=True))
-        self._vitals = _vitals(*kept)
+        self._vitals = Vitals._make(kept)
         return np.where(alive, np.asarray(cause), -1)
 
     def close(self) -> None:
         """Release the habitat."""
         self.habitat.close()
-
-
-def _vitals(energy: Any, eaten: Any) -> Vitals:
-    """Return energy and food as the law's arrays."""
-    return Vitals(energy, eaten)
-
-
-def label(cause: int) -> str:
-    """Return the word for a cause of death."""
-    return Cause(cause).label
 
 
 def observation_space(bodies: Bodies) -> spaces.Box:

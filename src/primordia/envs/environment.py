@@ -14,11 +14,11 @@ from primordia.envs.bodies import (
     Bodies,
     action_space,
     as_rows,
-    label,
     observation_space,
     zeros,
 )
 from primordia.habitats.contract import Ability, Compound
+from primordia.law.world import Cause
 
 FIRST = np.array([0])
 
@@ -113,7 +113,7 @@ class LifeEnv(gymnasium.Env):
         info: dict[str, Any] = {"food": float(bodies.food[0])}
         if bodies.energy is not None:
             info["energy"] = float(bodies.energy[0])
-        return info | ({"cause": label(cause)} if cause >= 0 else {})
+        return info | ({"cause": Cause(cause).label} if cause >= 0 else {})
 
     def render(self) -> np.ndarray | None:
         """Return a picture of the body, uint8 (height, width, 3); None if none can be drawn.

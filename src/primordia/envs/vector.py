@@ -10,7 +10,8 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
 from primordia import config
-from primordia.envs.bodies import Births, Bodies, action_space, as_rows, label, observation_space
+from primordia.envs.bodies import Births, Bodies, action_space, as_rows, observation_space
+from primordia.law.world import Cause
 
 
 class LifeVectorEnv(VectorEnv):
@@ -135,7 +136,7 @@ class LifeVectorEnv(VectorEnv):
         if bodies.energy is not None:
             info |= {"energy": bodies.energy.copy(), "_energy": every}
         if (died := cause >= 0).any():
-            words = np.array([label(each) if each >= 0 else None for each in cause], object)
+            words = np.array([Cause(each).label if each >= 0 else None for each in cause], object)
             info |= {"cause": words, "_cause": died}
         return info
 

@@ -203,9 +203,6 @@ class Habitat(ABC):
         """
         return [file]
 
-    def check(self, cells: int) -> None:  # noqa: B027 - a default
-        """Raise ValueError if these settings do not allow a run with this number of cells."""
-
     def original(self) -> "AnyHabitat | None":
         """Return a habitat for the whole game as the standard benchmark scores it; None if there is none.
 

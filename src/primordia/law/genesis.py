@@ -13,37 +13,31 @@ from primordia.random.keys import Purpose, bits, stream
 from primordia.random.wide import Wide, never, wide, zero
 
 
-def begin(law: Law, seeds: np.ndarray, tick: int = 0, births: int = 0) -> World:
-    """Return worlds without organisms. `settle` adds founders before the first tick.
-
-    Args:
-        law: the law.
-        seeds: seed of each world, uint64 (W,).
-        tick: the first value of the worlds' tick counts.
-        births: the first value of the worlds' birth counts.
-    """
-    return shared(empty_worlds, law, tick, births)(wide(seeds))
+def begin(law: Law, seeds: np.ndarray) -> World:
+    """Return worlds of these seeds, uint64 (W,), without organisms. `settle` adds founders before
+    the first tick."""
+    return shared(empty_worlds, law)(wide(seeds))
 
 
-def empty_worlds(law: Law, tick: int, births: int, seed: Wide) -> World:
+def empty_worlds(law: Law, seed: Wide) -> World:
     """Make the worlds for `begin`. Callers compile this function, which cuts its time to a third."""
     count, cells, mutation = len(seed.lo), law.worlds * law.cells, law.heredity.mutation
     worlds = Worlds(
         seed=seed,
-        tick=wide(np.full(count, tick, np.uint64)),
-        births=wide(np.full(count, births, np.uint64)),
+        tick=zero((count,)),
+        births=zero((count,)),
         deaths=zero((count, len(Cause))),
         extinctions=zero((count,)),
         organism_ticks=zero((count,)),
         food=zero((count,)),
         calm=jnp.zeros(count, jnp.int32),
-        sample_wait=jnp.full(count, law.sample_every - tick % law.sample_every, jnp.int32),
+        sample_wait=jnp.full(count, law.sample_every, jnp.int32),
         saturated=never((count,)),
         saturated_births=never((count,)),
         fixed=never((count,)),
         fixed_births=never((count,)),
         climate=initial_climate(law, count),
-        looks=initial_looks(law, count, tick),
+        looks=initial_looks(law, count, 0),
     )
     genome = {
         name: jnp.zeros((cells, *shape), jnp.float32) for name, shape in law.heredity.layout.blocks

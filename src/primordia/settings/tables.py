@@ -48,7 +48,7 @@ def values_of(task: str) -> dict[str, Any]:
     if task in known:
         return known[task]
     if doors.is_door(task):
-        return doors.values(task)
+        return doors.task(task).table
     if task.endswith(".toml") or isfile(task):
         values = from_toml(Path(task))
         name = str(values.get("task"))

@@ -3,7 +3,7 @@
 import difflib
 from collections.abc import Mapping
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
 from primordia.habitats.atari.simulator import REFUSED, console
 
@@ -28,9 +28,20 @@ def games() -> list[str]:
     return sorted(set(_ale().roms.get_all_rom_ids()) - set(REFUSED))
 
 
+class Facts(NamedTuple):
+    """What the emulator says of a game."""
+
+    actions: dict[str, int]
+    """names and codes of the actions that have an effect"""
+    options: dict[str, list[int]]
+    """its modes and difficulties"""
+    screen: tuple[int, int]
+    """height and width in pixels; a pixel is about twice as wide as high"""
+
+
 @cache
-def _facts(game: str) -> tuple[Mapping[str, int], Mapping[str, list[int]], tuple[int, int]]:
-    """Return a game's minimal actions, its modes and difficulties, and its screen's height and width.
+def facts(game: str) -> Facts:
+    """Return the facts of a game.
 
     Raises:
         ValueError: there is no such game, or it is refused.
@@ -45,22 +56,7 @@ def _facts(game: str) -> tuple[Mapping[str, int], Mapping[str, list[int]], tuple
     minimal = {action.name: int(action.value) for action in ale.getMinimalActionSet()}
     options = {"mode": ale.getAvailableModes(), "difficulty": ale.getAvailableDifficulties()}
     available = {name: list(map(int, values)) for name, values in options.items()}
-    return minimal, available, ale.getScreenDims()
-
-
-def minimal_actions(game: str) -> Mapping[str, int]:
-    """Return names and codes of the actions that have an effect in a game."""
-    return _facts(game)[0]
-
-
-def available_options(game: str) -> Mapping[str, list[int]]:
-    """Return a game's modes and difficulties."""
-    return _facts(game)[1]
-
-
-def screen_size(game: str) -> tuple[int, int]:
-    """Return a screen's height and width in pixels; a pixel is about twice as wide as high."""
-    return _facts(game)[2]
+    return Facts(minimal, available, ale.getScreenDims())
 
 
 @cache

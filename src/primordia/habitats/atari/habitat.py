@@ -13,12 +13,7 @@ import numpy as np
 from pydantic import Field, PrivateAttr, field_validator, model_validator
 
 from primordia.habitats import conditions
-from primordia.habitats.atari.games import (
-    available_options,
-    legal_actions,
-    minimal_actions,
-    screen_size,
-)
+from primordia.habitats.atari.games import facts, legal_actions
 from primordia.habitats.atari.simulator import FIELDS, RAM, SCREEN
 from primordia.habitats.conditions import Expression, Names
 from primordia.habitats.contract import Discrete, HostHabitat, Outcome
@@ -40,6 +35,8 @@ NAMES: Names = {
 """Names in conditions and amounts: RAM and lives after the tick; points and lost lives of the tick."""
 SCALED = (np.arange(256, dtype=np.float32) - 128) / 128
 """The number perceived for each value of a byte."""
+PIXEL = (4, 2)
+"""width and height of a pixel of the console in a picture: pixels are wide, as on a television"""
 FRAME_RATE = 60
 """frames a second"""
 
@@ -71,9 +68,8 @@ class Atari(HostHabitat, Settings):
     workers: int | None = Field(
         None,
         ge=0,
-        description="number of emulator processes; 0: emulators in this process; lives do not depend"
-        " on it"
-        " (default: one for each core, 0 if there is one core)",
+        description="number of emulator processes, at most one for each cell; 0: emulators in this"
+        " process; lives do not depend on it (default: one for each core, 0 if there is one core)",
     )
 
     _pool: Pool = PrivateAttr()
@@ -92,13 +88,13 @@ class Atari(HostHabitat, Settings):
 
     @model_validator(mode="after")
     def _check_game(self) -> "Atari":
-        known = minimal_actions(self.game)
+        known = facts(self.game).actions
         if unknown := [name for name in self._action_names if name not in legal_actions()]:
             raise ValueError(
                 f"actions: there is no {', '.join(unknown)}; {self.game} takes {', '.join(known)}"
             )
         for option in ("mode", "difficulty"):
-            value, available = getattr(self, option), available_options(self.game)[option]
+            value, available = getattr(self, option), facts(self.game).options[option]
             if value is not None and value not in available:
                 raise ValueError(f"{option}: {self.game} has {available}, not {value}")
         assert self._fatal_condition
@@ -131,7 +127,7 @@ class Atari(HostHabitat, Settings):
     def _action_names(self) -> list[str]:
         """Names of the actions, in order."""
         if self.actions in ("minimal", "full"):
-            known = minimal_actions(self.game) if self.actions == "minimal" else legal_actions()
+            known = facts(self.game).actions if self.actions == "minimal" else legal_actions()
             return list(known)
         return self.actions.split()
 
@@ -160,17 +156,9 @@ class Atari(HostHabitat, Settings):
         """Ticks a second."""
         return FRAME_RATE / self.frame_skip
 
-    def check(self, cells: int) -> None:
-        """Raise ValueError if there are more workers than cells."""
-        if self.workers is not None and self.workers > cells:
-            raise ValueError(
-                f"workers: {self.workers} workers are more than the {cells} cells; use at most"
-                f" {cells}"
-            )
-
     def open(self, cells: int, watched: bool = False) -> None:
         """Make the emulators, with screens if they are watched."""
-        screen = {SCREEN: ("uint8", (*screen_size(self.game), 3))} if watched else {}
+        screen = {SCREEN: ("uint8", (*facts(self.game).screen, 3))} if watched else {}
         settings = {
             **self.model_dump(
                 include={"game", "mode", "difficulty", "frame_skip", "sticky", "noops"}
@@ -234,9 +222,13 @@ class Atari(HostHabitat, Settings):
 
     def picture(self, body: dict[str, np.ndarray], action: np.ndarray) -> "Image":
         """Return the screen, with a margin for captions above."""
-        from primordia.habitats.atari.picture import draw
+        from PIL import Image
 
-        return draw(body[SCREEN])
+        from primordia.habitats.framed import framed
+
+        height, width = body[SCREEN].shape[:2]
+        size = width * PIXEL[0], height * PIXEL[1]
+        return framed(Image.fromarray(body[SCREEN]).resize(size, Image.Resampling.NEAREST))
 
     def caption(self, body: dict[str, np.ndarray], action: np.ndarray) -> str:
         """Return the score so far, and the button."""

@@ -71,8 +71,8 @@ class Gymnasium(HostHabitat, Settings):
     workers: int | None = Field(
         None,
         ge=0,
-        description="number of processes; 0: environments in this process; lives do not depend on it"
-        " (default: one for each core, 0 if there is one core)",
+        description="number of processes, at most one for each cell; 0: environments in this process;"
+        " lives do not depend on it (default: one for each core, 0 if there is one core)",
     )
 
     _pool: Pool = PrivateAttr()
@@ -187,14 +187,6 @@ class Gymnasium(HostHabitat, Settings):
         if ability is Ability.SAVE and self.saving == "restart":
             return ["save", "load"]
         return super().lacks(ability)
-
-    def check(self, cells: int) -> None:
-        """Raise ValueError if there are more workers than cells."""
-        if self.workers is not None and self.workers > cells:
-            raise ValueError(
-                f"workers: {self.workers} workers are more than the {cells} cells; use at most"
-                f" {cells}"
-            )
 
     def original(self) -> "Gymnasium":
         """Return the game that the benchmark scores: the reward is food, and a game's end is fatal."""

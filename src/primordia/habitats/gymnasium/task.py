@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from primordia.errors import InputError
-from primordia.settings.doors import replication
+from primordia.settings.doors import Task, settings
 
 PLAIN = 5.0
 """Unbounded observations that stay below this in random play are not scaled."""
@@ -17,28 +17,13 @@ SAVING = {
 }
 
 
-def values(env: str) -> dict[str, Any]:
-    """Return the settings of a task in an environment, as nested tables.
+@cache
+def task(env: str) -> Task:
+    """Return the task that is made from an environment, after measuring the environment.
 
     Raises:
         InputError: Gymnasium is not installed, or the environment cannot be used; the message says why.
     """
-    return _measured(env)[0]
-
-
-def report(env: str) -> tuple[list[str], list[str]]:
-    """Return the known facts of an environment and its faults, each in a line.
-
-    Raises:
-        InputError: see `values`.
-    """
-    _, facts, faults = _measured(env)
-    return facts, faults
-
-
-@cache
-def _measured(env: str) -> tuple[dict[str, Any], list[str], list[str]]:
-    """Return the settings of a task, and the description and the faults of its environment."""
     try:
         from primordia.habitats.gymnasium.check import measure
         from primordia.habitats.gymnasium.probe import info_of, probe
@@ -52,23 +37,16 @@ def _measured(env: str) -> tuple[dict[str, Any], list[str], list[str]]:
         keys = info_of(env, {}, ())
     except ValueError as error:
         raise InputError(str(error)) from None
-    name = env.rpartition(":")[2].replace("/", "-")
-    table = {
-        "task": name,
-        "about": f"Gymnasium's {env}: live until it terminates",
-        "genesis": "fill",
-        "replication": replication(found.lifespan),
-        "habitat": {
-            "name": "gymnasium",
-            "env": env,
-            "fatal": "terminated",
-            "saving": found.saving,
-            **({"fresh": True} if found.fresh else {}),
-            **({"scale": scale} if scale else {}),
-        },
-        "mutation": {"probability": 0.5, "scale": 0.02, "founder_scale": 0.3},
+    own = {
+        "name": "gymnasium",
+        "env": env,
+        "fatal": "terminated",
+        "saving": found.saving,
+        **({"fresh": True} if found.fresh else {}),
+        **({"scale": scale} if scale else {}),
     }
-    return table, _facts(env, about, found, keys), found.faults
+    table = settings(f"Gymnasium's {env}: live until it terminates", found.lifespan, own)
+    return Task(table, _facts(env, about, found, keys), found.faults)
 
 
 def _scale(env: str) -> list[float]:

@@ -6,50 +6,41 @@ from typing import Any
 from primordia.habitats.contract import Discrete, find
 from primordia.habitats.gymnax.check import BODIES, TICKS, Measured, measure
 from primordia.habitats.gymnax.habitat import Gymnax
-from primordia.settings.doors import replication
+from primordia.settings.doors import Task, settings
 from primordia.settings.making import make
 
 PLAIN = 5.0
 """Unbounded observations that stay below this in random play are not scaled."""
 
 
-def values(env: str) -> dict[str, Any]:
-    """Return the settings of a task in an environment, as nested tables.
+@cache
+def task(env: str) -> Task:
+    """Return the task that is made from an environment, after measuring the environment.
 
     Raises:
         InputError: there is no such environment, or it cannot be used; the message says why.
     """
-    habitat, found = _measured(env)
-    name = env.rpartition(":")[2]
+    # With this setting a task's bodies of MJX are those measured, and are compiled once.
+    habitat = make("habitat", {"name": "gymnax", "env": env, "squash": True}, find)
+    assert isinstance(habitat, Gymnax)
+    return _task(env, habitat, measure(habitat))
+
+
+def _task(env: str, habitat: Gymnax, found: Measured) -> Task:
     large = bool((habitat.senses.unbounded() & (found.largest > PLAIN)).any())
-    return {
-        "task": name,
-        "about": f"{env}: live until it is done",
-        "genesis": "fill",
-        "replication": replication(found.lifespan),
-        "habitat": {
-            "name": "gymnax",
-            "env": env,
-            "fatal": "done",
-            **({"squash": True} if large else {}),
-        },
-        "mutation": {"probability": 0.5, "scale": 0.02, "founder_scale": 0.3},
-    }
+    own = {"name": "gymnax", "env": env, "fatal": "done"} | ({"squash": True} if large else {})
+    table = settings(f"{env}: live until it is done", found.lifespan, own)
+    return Task(table, _facts(habitat, found), found.faults)
 
 
-def report(env: str) -> tuple[list[str], list[str]]:
-    """Return the known facts of an environment and its faults, each in a line.
-
-    Raises:
-        InputError: see `values`.
-    """
-    habitat, found = _measured(env)
+def _facts(habitat: Gymnax, found: Measured) -> list[str]:
+    """Return the facts of an environment for the author of a task, each in a line."""
     action = habitat.action
     named: dict[str, Any] = dict(habitat.names)
     numbers = f"{action.size} number{'s' * (action.size > 1)}"
     what = f"one of {action.size}" if isinstance(action, Discrete) else numbers
     limits = ", ".join(habitat.simulator.limits)
-    facts = [
+    return [
         f"Observation: {named['obs']} numbers, obs[0] to obs[{named['obs'] - 1}] in conditions.",
         f"Action: {what}.",
         *(f"Numbers in {part}: {_listed(part, named[part])}." for part in ("state", "info")),
@@ -62,19 +53,9 @@ def report(env: str) -> tuple[list[str], list[str]]:
         else f"None of {BODIES} lives ended in {TICKS} ticks of random play: set `fatal` to a condition,"
         " or add a metabolism.",
     ]
-    return facts, found.faults
 
 
 def _listed(part: str, kinds: dict[str, Any]) -> str:
     """List names without private parts; states of MJX have dozens of these."""
     public = (name for name in kinds if not name.startswith("_") and "._" not in name)
     return ", ".join(f'{part}["{name}"]' for name in public) or "none"
-
-
-@cache
-def _measured(env: str) -> tuple[Gymnax, Measured]:
-    """Return the habitat of an environment, and the measurements."""
-    # With this setting a task's bodies of MJX are those measured, and are compiled once.
-    habitat = make("habitat", {"name": "gymnax", "env": env, "squash": True}, find)
-    assert isinstance(habitat, Gymnax)
-    return habitat, measure(habitat)
