@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Callable, Mapping
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -64,7 +63,7 @@ def tell(
     """Print a table for each arm, or one JSON object for all; draw figures if a folder is given.
 
     Args:
-        name: the assay's name, which is also that of its module in `figures.assays` and of its files.
+        name: the assay's name, which is also that of its function in `figures.assays` and of its files.
         found: the results of each arm, by its path.
         as_json: whether JSON is printed.
         out: folder for figures; each of several arms has a folder in it, with the arm's name.
@@ -84,9 +83,8 @@ def tell(
 
 
 def _drawn(name: str, found: list[Any], folder: Path) -> list[Path]:
-    from primordia.figures import style
+    from primordia.figures import assays, style
 
-    draw = import_module(f"primordia.figures.assays.{name}").draw
     files.make_folder(folder)
     with style.applied():
-        return style.save(draw(found), folder / name)
+        return style.save(getattr(assays, name)(found), folder / name)
