@@ -12,9 +12,9 @@ from primordia.assays.ablate import Ablation
 from primordia.assays.compete import Competition
 from primordia.assays.effects import Effect
 from primordia.assays.garden import Bed
-from primordia.assays.heredity import Inherited, Pairs
 from primordia.assays.line import Line, Step
 from primordia.figures import assays, style
+from primordia.history.heredity import Inherited, Pairs
 from primordia.history.threshold import Threshold
 from tests.figures.reading import axes_of, edges_at, key, labels, lines, points, ticks
 

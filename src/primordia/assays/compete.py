@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from primordia.assays.signs import sign_test
 from primordia.assays.subjects import Subjects
 from primordia.brains import genomes
+from primordia.comparison.pairs import sign_test
 from primordia.config import Config, checked
 from primordia.errors import InputError
 from primordia.law.world import BirthCause

@@ -13,7 +13,7 @@ from primordia.cli.table import show_table, spread
 from primordia.errors import InputError
 
 if TYPE_CHECKING:
-    from primordia.comparison.controls import Standing
+    from primordia.assays.controls import Standing
     from primordia.organism.evaluation import Evaluation
 
 SENSES = {
@@ -131,7 +131,7 @@ def evaluation_text(result: "Evaluation", changes: dict[str, Any]) -> str:
 
 def show_standings(standings: "list[Standing]", title: str) -> None:
     """Print a row for each group of organisms, and notes on how to read the rows."""
-    from primordia.comparison.controls import OUTCOMES
+    from primordia.assays.controls import OUTCOMES
 
     outcomes = [name for name in OUTCOMES if standings[0].over_worlds(name)]
     rows = []

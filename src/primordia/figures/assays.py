@@ -10,9 +10,9 @@ from primordia.assays.ablate import Ablation
 from primordia.assays.compete import Competition
 from primordia.assays.effects import Effect
 from primordia.assays.garden import Bed
-from primordia.assays.heredity import Inherited
 from primordia.assays.line import Line
 from primordia.figures import style
+from primordia.history.heredity import Inherited
 from primordia.history.threshold import Threshold
 
 KEY = {"worlds": style.SKY, "median": style.BLUE}

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import primordia
+from primordia.assays import controls
+from primordia.assays.controls import Group, Standing, evolved, unevolved
 from primordia.brains import genomes
-from primordia.comparison import controls
-from primordia.comparison.controls import Group, Standing, evolved, unevolved
 from primordia.errors import InputError
 from primordia.history.founders import founders
 from primordia.organism.evaluation import Evaluation

@@ -14,7 +14,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from primordia.assays.signs import sign_test
+from primordia.comparison.pairs import sign_test
 from primordia.comparison.resample import LEAST, interval, resamples
 from primordia.errors import InputError
 from primordia.history import pedigree
