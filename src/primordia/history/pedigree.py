@@ -15,6 +15,7 @@ from jax import Array
 from primordia import device
 from primordia.compiled import shared
 from primordia.errors import Trouble
+from primordia.history.ancestry import places_of, with_ancestors
 from primordia.history.births import genome_in, recorded
 from primordia.history.climate import PastClimate
 from primordia.law.heredity import Heredity
@@ -84,24 +85,15 @@ class _Pedigree:
         Also return, for each row, the indices of its parent and mate among these rows (-1 for none)
         and its generation: 0 for founders, -1 for organisms that were alive at a fork.
         """
-        lives, known = self._lives, np.zeros(len(self._lives), bool)
+        lives = self._lives
         root = (lives.birth_cause == BirthCause.FOUNDER) | lives.inherited
-        mate_row = self._mate_rows()
-        new = np.unique(rows)
-        while len(new):
-            known[new] = True
-            inner = new[~root[new]]
-            older = np.unique([lives.parent_row[inner], mate_row[inner]])
-            new = older[(older >= 0) & ~known[older]]
-        members = np.flatnonzero(known)
-        parents, mates = (
-            _places(members, np.where(root[members], -1, of[members]))
-            for of in (lives.parent_row, mate_row)
-        )
+        both = [np.where(root, -1, of) for of in (lives.parent_row, self._mate_rows())]
+        members = with_ancestors(rows, *both)
+        parents, mates = (places_of(members, of[members]) for of in both)
         generation = np.where(lives.inherited[members], -1, 0)
         for place in np.flatnonzero(parents >= 0):  # parents have lower rows than children
-            both = generation[parents[place]], generation[mates[place]] if mates[place] >= 0 else 0
-            generation[place] = max(*both, 0) + 1
+            of_mate = generation[mates[place]] if mates[place] >= 0 else 0
+            generation[place] = max(generation[parents[place]], of_mate, 0) + 1
         return members, parents, mates, generation
 
     def _mate_rows(self) -> np.ndarray:
@@ -168,11 +160,6 @@ class _Made:
             self._uses[place] -= 1
             if not self._uses[place]:
                 del self.genomes[place]
-
-
-def _places(members: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Return the indices of rows among the ascending members; -1 for row -1."""
-    return np.where(rows < 0, -1, np.searchsorted(members, rows))
 
 
 def _inherits_notes(mutation: Mutation) -> bool:
