@@ -4,7 +4,7 @@ import numpy as np
 
 from primordia.errors import InputError
 from primordia.history.ancestry import nearest, places_of
-from primordia.history.clades import crowd_size
+from primordia.phylogeny.clades import crowd_size
 from primordia.phylogeny.living import Census, Turnover, last_era
 from primordia.runs.lives import Lives
 
