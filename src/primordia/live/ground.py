@@ -36,7 +36,7 @@ class Ground:
             ticks: the present tick of each world, int64 (W,).
         """
         lives = self._lives(ticks)
-        worlds = (lives.of_world(world) for world in range(lives.worlds))
+        worlds = lives.by_world()
         return [
             over_births(world, each, np.array([0, len(each)]))[0]
             for world, each in enumerate(worlds)
