@@ -23,7 +23,7 @@ import named
 
 import primordia
 from primordia import files
-from primordia.comparison.controls import OUTCOMES, Group, Standing, evolved, unevolved
+from primordia.assays.controls import OUTCOMES, Group, Standing, evolved, unevolved
 from primordia.comparison.tables import spread_text
 from primordia.experiments.results import table
 from primordia.runs.records import Records

@@ -15,7 +15,7 @@ import numpy as np
 from games import write_rows
 
 import primordia
-from primordia.comparison.shadow import Shadow
+from primordia.assays.shadow import Shadow
 from primordia.comparison.tables import number_text
 from primordia.experiments.results import table
 

@@ -20,7 +20,7 @@ import numpy as np
 from games import write_rows
 
 import primordia
-from primordia.comparison.controls import Group, evolved, unevolved
+from primordia.assays.controls import Group, evolved, unevolved
 from primordia.comparison.tables import spread_text
 from primordia.experiments.results import table
 from primordia.habitats.cartpole.habitat import CartPole

@@ -20,7 +20,7 @@ import reference
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from primordia import config
-from primordia.assays.signs import sign_test
+from primordia.comparison.pairs import sign_test
 from primordia.comparison.tables import number_text, spread_text
 from primordia.settings.tables import tasks
 

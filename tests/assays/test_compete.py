@@ -14,8 +14,8 @@ import pytest
 import primordia
 from primordia.assays import compete as module
 from primordia.assays.compete import Competition, compete
-from primordia.assays.signs import sign_test
 from primordia.assays.subjects import Subjects, of_run
+from primordia.comparison.pairs import sign_test
 from primordia.errors import InputError
 from primordia.law.world import BirthCause
 from primordia.runs.lives import Lives

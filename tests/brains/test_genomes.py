@@ -92,7 +92,7 @@ def test_genomes_that_descend_from_ancestors_are_rebuilt_by_the_same_code(
     loop.start(config(values), tmp_path / "run")
     with jax.log_compiles():
         rebuild_all(Archive(tmp_path / "run"), [(0, 0), (1, 0), (2, 0)])
-    assert caplog.text.count("Finished XLA compilation of jit(_replay_births)") == 1
+    assert caplog.text.count("Finished XLA compilation of jit(_repeat)") == 1
 
 
 def test_organisms_are_exported_in_the_given_order_or_the_longest_life(

@@ -12,9 +12,9 @@ from primordia.assays.ablate import Ablation
 from primordia.assays.compete import Competition
 from primordia.assays.effects import Effect
 from primordia.assays.garden import Bed
-from primordia.assays.heredity import Inherited, Pairs
 from primordia.assays.line import Line, Step
 from primordia.cli.assays import options, tables
+from primordia.history.heredity import Inherited, Pairs
 from primordia.history.threshold import Threshold
 
 OFFSETS = (8, 0, 2)

@@ -5,8 +5,8 @@ from unittest.mock import patch
 import numpy as np
 import pytest
 
+from primordia.assays.controls import Standing
 from primordia.cli import evaluate
-from primordia.comparison.controls import Standing
 from primordia.organism.evaluation import Evaluation
 from primordia.organism.games import Games
 from tests.commands import here

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from primordia.assays.shadow import Shadow
 from primordia.cli.shadow import shadow_text
-from primordia.comparison.shadow import Shadow
 
 
 def test_the_text_has_the_lives_of_originals_and_of_shadows() -> None:

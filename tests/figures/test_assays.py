@@ -12,11 +12,9 @@ from primordia.assays.ablate import Ablation
 from primordia.assays.compete import Competition
 from primordia.assays.effects import Effect
 from primordia.assays.garden import Bed
-from primordia.assays.heredity import Inherited, Pairs
 from primordia.assays.line import Line, Step
-from primordia.figures import style
-from primordia.figures.assays import ablate, compete, effects, garden, heredity, line, threshold
-from primordia.figures.assays.strips import strips
+from primordia.figures import assays, style
+from primordia.history.heredity import Inherited, Pairs
 from primordia.history.threshold import Threshold
 from tests.figures.reading import axes_of, edges_at, key, labels, lines, points, ticks
 
@@ -52,7 +50,7 @@ def test_ablations_are_drawn_in_order_with_the_median_of_the_organisms() -> None
         for without, lifespans in lived.items()
         for organism, lifespan in enumerate(lifespans)
     ]
-    (axes,) = axes_of(ablate.draw, found)
+    (axes,) = axes_of(assays.ablate, found)
     shares = [0.1, 0.2, 0.9, 0.6], [1.0, 1.0, 1.8, 1.0]
     assert points(axes, style.SKY) == [(x, y) for y in (0, 1) for x in shares[y]]
     assert points(axes, style.BLUE) == [(pytest.approx(0.4), 0), (1, 1)]
@@ -68,7 +66,7 @@ def test_the_share_of_one_genome_is_drawn_in_each_world() -> None:
     tick = np.array([0, 30, 60, 90])
     share = np.array([[0.5, 0.6, 0.9, np.nan], [0.5, 0.4, 0.8, 1.0], [0.5, 0.1, 0.0, 0.2]])
     pairs = Competition("a", "b", tick, share), Competition("c", "d", 2 * tick, share[:1])
-    several, single = axes_of(compete.draw, [*pairs])
+    several, single = axes_of(assays.compete, [*pairs])
     *worlds, (x, median) = lines(several, style.BLUE)
     np.testing.assert_array_equal([y for _, y in worlds], share)
     assert (x.tolist(), median.tolist()) == (tick.tolist(), [0.5, 0.4, 0.8, pytest.approx(0.6)])
@@ -89,7 +87,7 @@ def test_effects_are_drawn_as_shares_of_mutants_with_quartiles_of_organisms() ->
         for name, of_name in zip(names, lived, strict=True)
         for organism, mutants in enumerate(of_name)
     ]
-    (axes,) = axes_of(effects.draw, found)
+    (axes,) = axes_of(assays.effects, found)
     assert ticks(axes.xaxis) == {k: name.replace(" ", "\n") for k, name in enumerate(names)}
     shares = {style.BLUE: lived == 10, style.GREEN: lived >= 11, style.VERMILION: lived < 7}
     for band, (colour, counted) in zip(axes.collections, shares.items(), strict=True):
@@ -125,7 +123,7 @@ def beds() -> list[Bed]:
 
 
 def test_the_garden_is_drawn_as_pairs_of_lives_and_as_survival_of_each_group() -> None:
-    pairs, again = axes_of(garden.draw, beds())
+    pairs, again = axes_of(assays.garden, beds())
     assert points(pairs, style.BLUE) == [(9, 3), (8, 1), (1, 6), (7, 6)]
     assert points(pairs, style.ORANGE) == [(2, 2.5), (1, 1), (5, 2.5), (4, 50), (3, 8)]
     assert labels(pairs) == (
@@ -149,7 +147,7 @@ def test_the_garden_is_drawn_as_pairs_of_lives_and_as_survival_of_each_group() -
 
 def test_a_strip_without_known_values_is_left_out_and_zeros_are_known() -> None:
     axes = Figure().subplots()
-    strips(axes, {"none": [None, np.nan], "zero": [0.0, None, 0.0], "one": [0.5]})
+    assays.strips(axes, {"none": [None, np.nan], "zero": [0.0, None, 0.0], "one": [0.5]}, "")
     check_strips(axes, {"none": [], "zero": [0.0, 0.0], "one": [0.5]})
 
 
@@ -169,7 +167,7 @@ def test_heredity_is_drawn_as_strips_of_the_worlds() -> None:
         for world in range(3)
     ]
     found.append(Inherited(3, nothing, nothing, nothing, None, None))
-    slopes, shares, terms = axes_of(heredity.draw, found)
+    slopes, shares, terms = axes_of(assays.heredity, found)
     first, second, third, _ = found
     check_strips(
         slopes,
@@ -201,7 +199,7 @@ def test_the_threshold_is_drawn_as_strips_of_the_worlds() -> None:
         Threshold(2, 0.125, None, np.inf),
         Threshold(3, 0.9, None, 10.0),
     ]
-    shares, factors = axes_of(threshold.draw, found)
+    shares, factors = axes_of(assays.threshold, found)
     check_strips(
         shares, {"p: children\nthat mutate": [0.5, 0.25, 0.125, 0.9], "v: mutants\nas good": [0.75]}
     )
@@ -219,7 +217,7 @@ def test_a_line_is_drawn_to_its_last_generation_with_both_lives_of_each_genome()
 
     short = Line(40, 2, 5, 4, steps((0, 3, 0.0), (2, 0, 90.0), (3, 8, 95.0), (4, 9, 100.0)))
     single = Line(0, 1, 0, 1, steps((0, 5, 6.0)))
-    one, other = axes_of(line.draw, [short, single])
+    one, other = axes_of(assays.line, [short, single])
     (born_again,) = (each for each in one.get_lines() if each.get_color() == style.BLUE)
     assert born_again.get_drawstyle() == "steps-post", "a genome lasts until the next"
     assert points(one, style.BLUE) == [(0, 1), (2, 90), (3, 95), (4, 100), (5, 100)]

@@ -18,6 +18,7 @@ from primordia.figures import ages, population, spacetime, style, survival
 from primordia.figures.plot import KNOWN, find
 from primordia.history import series
 from primordia.law.world import Cause
+from primordia.phylogeny.clades import clades_of
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
@@ -98,7 +99,7 @@ def test_space_time_shows_the_occupant_of_each_cell_and_tick(run: Path) -> None:
 def test_space_time_shows_in_colours_what_became_of_each_line(run: Path) -> None:
     world = Archive(run).lives.of_world(0)
     cells, ticks = np.arange(24), np.arange(901)
-    of = spacetime.clades_of(world)
+    of = clades_of(world)
     occupants = spacetime.occupants(world, cells, ticks)
     image = spacetime.picture(world, of, cells, ticks)
     np.testing.assert_array_equal((image == 1).all(axis=-1), occupants == spacetime.EMPTY)

@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from matplotlib.text import Annotation
 
 from primordia.figures import spacetime, style
-from primordia.history.clades import Clades
 from primordia.law.world import BirthCause, Cause
+from primordia.phylogeny.clades import Clades, clades_of
 from primordia.runs.lives import ALIVE, Lives
 from tests.figures.reading import axes_of, key, labels, run_of
 from tests.synthetic import occupants, world_of, worlds_of
@@ -83,7 +83,7 @@ def expected_inks(
 @pytest.mark.parametrize("seed", [2, 11])
 def test_the_colour_of_a_line_depends_on_its_size_its_age_and_its_end(seed: int) -> None:
     lives, ticks = a_history(seed), np.arange(0, LAST + 1, 2)
-    of = spacetime.clades_of(lives)
+    of = clades_of(lives)
     image = spacetime.picture(lives, of, np.arange(CELLS), ticks)
     line_at: dict[tuple[int, int], tuple[int, int]] = {}
     for place, tick in enumerate(ticks.tolist()):
@@ -99,7 +99,7 @@ def test_the_colour_of_a_line_depends_on_its_size_its_age_and_its_end(seed: int)
 
 
 def test_the_invented_histories_have_lines_of_all_kinds() -> None:
-    found = [spacetime.clades_of(a_history(seed)) for seed in (2, 11)]
+    found = [clades_of(a_history(seed)) for seed in (2, 11)]
     assert max(len(of.renewals) for of in found) > 14, "more eras than strong colours"
     assert {int((~of.by_takeover).sum()) for of in found} == {2}, "each died out and began again"
     assert {int(of.renewals[-1]) for of in found} == {LAST}, "one line takes over at the end"
@@ -120,7 +120,7 @@ def test_the_picture_goes_from_the_first_birth_to_the_last(monkeypatch: pytest.M
     lives = world_of(mine, until=200)
     births = lives.born[[0, 2, 5, 8, 11]]
     cells = np.array([0, 2, 4, 6])
-    expected = spacetime.picture(lives, spacetime.clades_of(lives), cells, births)
+    expected = spacetime.picture(lives, clades_of(lives), cells, births)
     np.testing.assert_array_equal(image.get_array(), expected)
     assert list(image.get_extent()) == [-0.5, 7.5, 12.5, 0.5]
     assert labels(axes) == (

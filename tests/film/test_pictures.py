@@ -13,6 +13,7 @@ from primordia.film.frame import HEIGHT, STRIPS, WIDTH, Frames, fitted, with_col
 from primordia.film.moments import RATE, SECONDS, moments
 from primordia.film.shape import PAPER, SIDE, Ring, shape
 from primordia.law.placement import Placement
+from primordia.phylogeny.clades import clades_of
 from tests.synthetic import alive, world_of
 
 LIVED = [(0, 9, True), (2, 30, False), (2, 4, True), (5, 30, False), (11, 1, True)]
@@ -60,7 +61,7 @@ def test_a_cell_is_lighter_with_age_and_flashes_after_a_birth(
     monkeypatch.setattr(colouring, "MOST", together)
     lived = [(tick // 3 * 3, tick, tick % 3 > 0) for tick in range(14)] + [(20, 60, False)] * 6
     world, cells = world_of(lived, until=90), np.arange(40)
-    clades = spacetime.clades_of(world)
+    clades = clades_of(world)
     ticks = np.array([2, 3, 6, 7, 13, 20, 30, 41, 80])
     for number, drawn in enumerate(colours(world, cells, ticks, FULL)):
         tick, before = ticks[number], ticks[max(number - 1, 0)]

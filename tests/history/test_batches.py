@@ -1,5 +1,6 @@
 """Births repeated in batches, with an invented heredity: a genome holds the numbers of its parents."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -7,9 +8,9 @@ import numpy as np
 import pytest
 
 from primordia.errors import Trouble
-from primordia.history import pedigree, rebuilding
+from primordia.history import pedigree
 from primordia.history.pedigree import genomes
-from primordia.history.rebuilding import changes, descent, rebuild_all
+from primordia.history.rebuilding import changes, descent
 from primordia.random.wide import to_host
 from primordia.runs.lives import joined
 from tests.assays.lives import COPY, FOUNDER, MUTANT, lives
@@ -55,9 +56,8 @@ def a_run(mates: np.ndarray | None = None) -> Any:
 def at_once(monkeypatch: pytest.MonkeyPatch) -> int:
     """Repeat three births in one call, or one: generations have up to six, and lines up to ten."""
     monkeypatch.setattr(pedigree, "FEW", 1)
-    for module, name in ((pedigree, "AT_ONCE"), (rebuilding, "STEPS_AT_A_TIME")):
-        monkeypatch.setattr(module, name, 3)
-        monkeypatch.setattr(module, "PastClimate", lambda _: SimpleNamespace(of_lives=climate_of))
+    monkeypatch.setattr(pedigree, "AT_ONCE", 3)
+    monkeypatch.setattr(pedigree, "PastClimate", lambda _: SimpleNamespace(of_lives=climate_of))
     return 3
 
 
@@ -99,32 +99,20 @@ def test_each_birth_of_a_pedigree_has_its_own_parents_and_notes(
     assert len(births) == len(set(births)), "no birth is repeated twice"
 
 
-def test_each_line_of_descent_is_replayed_from_its_founder(
-    at_once: int, monkeypatch: pytest.MonkeyPatch
+def test_the_changes_of_a_line_are_those_from_parent_to_child(
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """A genome is the number of replayed births, the number of the last one, its world and its note."""
-
-    def replay(genome: np.ndarray, counts: tuple, marks: tuple, climate: dict, notes: Any) -> Any:
-        (seed, number, tick), (cell, founder, real) = counts, marks
-        number = to_host(number).astype(int)
-        assert len(number) == at_once
-        assert number.tolist() == to_host(tick).tolist() == cell.tolist()
-        world = climate["any"] // 100
-        assert (to_host(seed) == SEEDS[world]).all()
-        assert founder.tolist() == [bool(each == 0) for each in number]
-        for k in np.flatnonzero(real):
-            assert number[k] > genome[1] or genome[0] == 0
-            genome = np.array([genome[0] + 1, number[k], world[k], notes[k, 0]], np.float32)
-        return genome, number[:, None].astype(np.float32)
-
-    monkeypatch.setattr(rebuilding, "shared", lambda *_: replay)
-    asked = [(9, 1), (11, 0), (0, 0), (3, 1), (4, 0)]
-    expected = [[10, 9, 1, 90], [6, 11, 0, 110], [1, 0, 0, 0], [4, 3, 1, 30], [2, 4, 0, 40]]
-    assert rebuild_all(a_run(), asked).tolist() == expected
-    for organism, world, line in ((9, 1, range(1, 10)), (11, 0, (2, 5, 7, 8, 11)), (0, 0, ())):
-        found = changes(a_run(), organism, world)
+    """The genome of an organism is its row. Organisms alive at a fork, and the first, have no change."""
+    monkeypatch.setattr(pedigree, "genomes", lambda run, rows: np.float32(rows[:, None]))
+    run = a_run()
+    run.layout.split = lambda genomes: {"all": genomes[:, :, None]}
+    for organism, world, line in ((9, 1, [1] * 9), (11, 0, [2, 3, 2, 1, 3]), (0, 0, [])):
+        found = changes(run, organism, world)
         assert np.isnan(found[0, 0])
-        assert found[1:, 0].tolist() == list(line)
+        assert found[1:, 0].tolist() == line
+    inherited = np.isin(np.arange(len(LIVES)), [0, 2])
+    run.lives = replace(LIVES, inherited=inherited)
+    np.testing.assert_array_equal(changes(run, 11, 0)[:, 0], [np.nan, np.nan, 3, 2, 1, 3])
 
 
 @pytest.mark.parametrize(("organism", "mate"), [(4, 4), (4, 5), (12, 13), (1, 2**40), (3, 12)])

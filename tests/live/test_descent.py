@@ -6,29 +6,29 @@ from typing import Any
 import numpy as np
 import pytest
 
-from primordia.history.lines import NO_PARENT, Turnover
 from primordia.law.world import World
 from primordia.live import descent
 from primordia.live.descent import Descent
+from primordia.phylogeny.clades import NO_PARENT, BirthsAndDeaths
 from tests.live.posed import posed
 
 EMPTY = posed([[0] * 64] * 3, [[0] * 64] * 3, [1] * 3)
 
 
-def births(*numbers: int, parent: int = NO_PARENT, tick: int = 0) -> Turnover:
+def births(*numbers: int, parent: int = NO_PARENT, tick: int = 0) -> BirthsAndDeaths:
     """Return births in one tick, without deaths."""
     born, none = np.array(numbers, np.int64), np.zeros(0, np.int64)
-    return Turnover(born, np.full(len(born), parent), np.full(len(born), tick), none, none)
+    return BirthsAndDeaths(born, np.full(len(born), parent), np.full(len(born), tick), none, none)
 
 
-def deaths(*numbers: int, tick: int) -> Turnover:
+def deaths(*numbers: int, tick: int) -> BirthsAndDeaths:
     """Return deaths in one tick, without births."""
     dead, none = np.array(numbers, np.int64), np.zeros(0, np.int64)
-    return Turnover(none, none, none, dead, np.full(len(dead), tick))
+    return BirthsAndDeaths(none, none, none, dead, np.full(len(dead), tick))
 
 
 def status(
-    happened: list[Turnover], world: World = EMPTY, cells: int = 64, wall_s: float = 0.0
+    happened: list[BirthsAndDeaths], world: World = EMPTY, cells: int = 64, wall_s: float = 0.0
 ) -> Any:
     """Return the status of a run after a chunk with these events of each world."""
     engine = SimpleNamespace(
@@ -40,7 +40,7 @@ def status(
 @pytest.fixture(autouse=True)
 def small(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Descent, "EVENTS", 10)
-    monkeypatch.setattr(descent, "turnovers", lambda events, cells, shown: events)
+    monkeypatch.setattr(descent, "births_and_deaths", lambda events, cells, shown: events)
 
 
 def test_lines_are_given_up_after_too_many_births() -> None:

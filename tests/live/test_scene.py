@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from rich.segment import Segment
 
-from primordia.history.lines import Lines
 from primordia.law.world import World
 from primordia.live.forms import Ring, Room, Torus
 from primordia.live.paint import Cells, mosaic
 from primordia.live.scene import Grid, Stage, _labelled, cells_of
+from primordia.phylogeny.clades import Lines
 from tests.live.drawn import colours, text
 from tests.live.posed import law, posed
 

@@ -69,7 +69,7 @@ def test_organisms_play_side_by_side_as_they_play_alone(
 ) -> None:
     """This holds for any number of organisms, and for any number that play at once."""
     some = [(0, 0), (7, 0), (3, 0), (11, 0), (7, 0)]
-    monkeypatch.setattr(games, "AT_ONCE", 6)
+    monkeypatch.setitem(games.AT_ONCE, "jax", 6)
     run = Archive(poles)
     together = evaluate(run, some, games=3, ticks=300, senses=senses)
     for each, evaluation in zip(some, together, strict=True):

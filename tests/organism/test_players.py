@@ -41,10 +41,11 @@ def test_founders_of_a_garden_have_keys_and_genomes_of_their_worlds(
     monkeypatch.setattr(players, "_players", lambda *given: given)
     seeds, ends = np.array([11, 22, 33], np.uint64), np.array([500, 600, 700])
     run: Any = SimpleNamespace(world_seeds=seeds, ends=ends)
-    world, found = players.founders_of(run, np.array([2, 0]), np.array([3, 2]))
+    world, number, found = players.founders_of(run, np.array([2, 0]), np.array([3, 2]))
     given: Any = found
     _, rows, keys, climate = given
     assert world.tolist() == [2, 2, 2, 0, 0]
+    assert number.tolist() == [0, 1, 2, 0, 1]
     assert np.ravel(rows).tolist() == [200, 201, 202, 0, 1]
     assert climate["world"].tolist() == [2, 2, 2, 0, 0]
     assert climate["tick"].tolist() == [700, 700, 700, 500, 500]

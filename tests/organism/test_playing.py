@@ -87,8 +87,8 @@ def test_only_what_is_frozen_changes_a_game(
     assert not differs[free(frozen)].any()
     assert differs.any()
     each = len(players.genomes) // 3
-    for at_once in (games.AT_ONCE_IN_JAX, 3 * each):
-        monkeypatch.setattr(games, "AT_ONCE_IN_JAX", at_once)
+    for at_once in (games.AT_ONCE["jax"], 3 * each):
+        monkeypatch.setitem(games.AT_ONCE, "jax", at_once)
         spans = lifespans_in_games(players, 3, 150, frozen)
         np.testing.assert_array_equal(spans, held.ticks)
 

@@ -59,10 +59,10 @@ def test_the_games_of_a_player_are_adjacent_and_numbered(
 
 @pytest.mark.parametrize(
     ("at_once", "parts"),
-    [(5, [[0, 1], [2, 3], [4]]), (1, [[0], [1], [2], [3], [4]]), (None, [[0, 1, 2, 3, 4]])],
+    [(5, [[0, 1], [2, 3], [4]]), (1, [[0], [1], [2], [3], [4]]), (10, [[0, 1, 2, 3, 4]])],
 )
 def test_players_in_parts_keep_their_own_scripts_and_frozen_inputs(
-    at_once: int | None, parts: list[list[int]], monkeypatch: pytest.MonkeyPatch
+    at_once: int, parts: list[list[int]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The games of one player are never separated."""
     asked: list[Any] = []
@@ -79,7 +79,8 @@ def test_players_in_parts_keep_their_own_scripts_and_frozen_inputs(
         return Games(each, each > 3, each / 2, each + 7, [np.array([k]) for k in numbers])
 
     monkeypatch.setattr(games, "_play_at_once", play_at_once)
-    found = play(players(5), 2, 70, frozen=frozen(5), script=script(5), at_once=at_once)
+    monkeypatch.setitem(games.AT_ONCE, "host", at_once)
+    found = play(players(5), 2, 70, frozen=frozen(5), script=script(5))
     assert asked == parts
     assert found.ticks.tolist() == [[k, 100 + k] for k in range(5)]
     assert found.over.tolist() == [[k > 3, True] for k in range(5)]
@@ -151,17 +152,15 @@ def test_lifespans_are_found_in_parts_and_each_part_has_its_own_frozen_inputs(
     """Five players have two games each. On the host four games are played at once, and in JAX six."""
     asked: list[int] = []
 
-    def play_part(own: Players, count: int, ticks: int, *, frozen: Any, at_once: int) -> Any:
+    def play_part(own: Players, count: int, ticks: int, frozen: Any, script: None) -> Any:
         numbers = own.genomes[:, 0].astype(int)
         asked.append(len(numbers))
         assert (count, ticks) == (2, 70)
-        assert at_once >= 2 * len(numbers)
         np.testing.assert_array_equal(frozen.senses, held.senses[numbers])
         return SimpleNamespace(ticks=np.stack([numbers, 100 + numbers], axis=1))
 
     held = frozen(5)
-    monkeypatch.setattr(games, "AT_ONCE", 4)
-    monkeypatch.setattr(games, "AT_ONCE_IN_JAX", 6)
-    monkeypatch.setattr(games, "play", play_part)
+    monkeypatch.setattr(games, "AT_ONCE", {"host": 4, "jax": 6})
+    monkeypatch.setattr(games, "_play_at_once", play_part)
     spans = games.lifespans_in_games(players(5, kind), 2, 70, held)
     assert (asked, spans.tolist()) == (sizes, [[k, 100 + k] for k in range(5)])

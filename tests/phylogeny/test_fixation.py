@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from primordia.phylogeny.ancestry import nearest
+from primordia.history.ancestry import nearest
 from primordia.phylogeny.fixation import UNKNOWN, branches, first_ticks
 from primordia.phylogeny.living import Turnover
 from primordia.phylogeny.sweeps import sweeps

@@ -8,6 +8,7 @@ import pytest
 
 from primordia.figures import spacetime
 from primordia.law.world import BirthCause, Cause
+from primordia.phylogeny.clades import clades_of
 from primordia.report import ground
 from primordia.report.ground import Ground, palette
 from primordia.report.organisms import organisms
@@ -32,7 +33,7 @@ def takeovers(births: int = 300, cells: int = CELLS) -> Lives:
 def test_each_cell_shows_the_line_of_its_organism_at_each_moment() -> None:
     """The ink of a line depends on its size, which is counted in cells and moments."""
     lives = takeovers()
-    shown, clades = Ground(lives, CELLS), spacetime.clades_of(lives)
+    shown, clades = Ground(lives, CELLS), clades_of(lives)
     assert len(clades.renewals) > 5, "lines take over several times"
     segments, inks = shown.segments, all_unpacked(shown.data()["segments"])["ink"]
     places = list(zip(lives.cell[segments["row"]], segments["start"], strict=True))
@@ -56,7 +57,7 @@ def test_each_cell_shows_the_line_of_its_organism_at_each_moment() -> None:
 
 def test_the_first_marks_say_when_and_why_lines_began() -> None:
     lives = takeovers(cells=4)
-    clades = spacetime.clades_of(lives)
+    clades = clades_of(lives)
     marks = Ground(lives, 4).data()["marks"]
     assert len(marks) == 12 < len(clades.renewals)
     assert marks[0] == {"place": 0, "tick": 0, "why": "2 alive: each begins a line"}
@@ -70,7 +71,7 @@ def test_of_many_cells_every_third_is_shown(monkeypatch: pytest.MonkeyPatch) -> 
     only in cells that are not shown."""
     monkeypatch.setattr(ground, "COLUMNS", 3)
     lives = takeovers().recorded_until(274)
-    shown, clades = Ground(lives, CELLS), spacetime.clades_of(lives)
+    shown, clades = Ground(lives, CELLS), clades_of(lives)
     data = shown.data()
     assert [data[name] for name in ("cells", "shown", "step", "births")] == [8, 3, 3, 282]
     segments = all_unpacked(data["segments"])

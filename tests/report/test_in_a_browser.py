@@ -140,4 +140,4 @@ def test_the_commands_are_copied_or_else_selected(cart_page: Path, page: Page) -
     button = page.one(".command button")
     button.click()
     page.until(lambda: button.text in ("Copied", "Selected"))
-    assert page.text(".command pre").startswith("primordia run CartPole-survival --cells 16")
+    assert page.text(".command pre").startswith("primordia run config.toml --out")

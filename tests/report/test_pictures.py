@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from primordia.figures import spacetime
+from primordia.phylogeny.clades import clades_of
 from primordia.report import film, ground
 from primordia.report import tree as phylogeny
 from primordia.report.ground import Ground
@@ -85,7 +86,7 @@ def test_space_time_shows_who_was_where_after_each_moment(
 def test_the_lines_of_space_time_have_the_inks_of_the_figure(torus: Path) -> None:
     lives = Archive(torus).lives.of_world(0)
     shown = Ground(lives, 24)
-    segments, clades = all_unpacked(shown.data()["segments"]), spacetime.clades_of(lives)
+    segments, clades = all_unpacked(shown.data()["segments"]), clades_of(lives)
     ticks = lives.born[segments["start"]]
     rows = segments["organism"]
     codes = spacetime.line_codes(lives, clades, rows[:, None], ticks)[:, 0]
@@ -253,7 +254,7 @@ def test_each_byte_of_a_film_is_the_ink_of_a_line_and_the_shade_of_an_age(torus:
     """There are 8 shades: equal steps of the logarithm of 1 + age, up to the longest life."""
     run = Archive(torus)
     lives = run.lives.of_world(1)
-    shown, clades = Ground(lives, 24), spacetime.clades_of(lives)
+    shown, clades = Ground(lives, 24), clades_of(lives)
     made = film.film(shown, run.config)
     assert made is not None
     pictures, longest = unpacked(made["cells"]).reshape(-1, 24), int(lives.lifespan.max())

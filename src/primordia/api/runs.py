@@ -11,10 +11,10 @@ import numpy as np
 import pyarrow as pa
 
 from primordia import device as devices
-from primordia.assays.heredity import Inherited, heredity
-from primordia.comparison.controls import FOUNDERS, Standing, evolved, unevolved
-from primordia.comparison.shadow import ORGANISMS, Shadow, shadow
+from primordia.assays.controls import FOUNDERS, Standing, evolved, unevolved
+from primordia.assays.shadow import ORGANISMS, Shadow, shadow
 from primordia.errors import InputError, Trouble
+from primordia.history.heredity import Inherited, heredity
 from primordia.history.info import info
 from primordia.history.summary import summary
 from primordia.history.threshold import Threshold, threshold
@@ -138,7 +138,7 @@ class Run:
         return shadow(self.opened(), organisms, ticks)
 
     def heredity(self, after: float = LATE) -> list[Inherited]:
-        """Measure how length of life is inherited in each world; see `assays.heredity`."""
+        """Measure how length of life is inherited in each world; see `history.heredity`."""
         return heredity(self.opened(), after)
 
     def threshold(self, after: float = LATE) -> list[Threshold]:

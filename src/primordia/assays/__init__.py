@@ -1,1 +1,1 @@
-"""Assays: measurements of heredity, of what limits evolution, and of single genomes."""
+"""Measurements for which organisms or genomes live again: alone, in fresh games, or in an empty world."""

@@ -11,11 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from primordia.assays.signs import sign_test
 from primordia.assays.subjects import Subjects
 from primordia.brains import genomes
+from primordia.comparison.pairs import sign_test
 from primordia.config import Config, checked
 from primordia.errors import InputError
+from primordia.history.ancestry import nearest
+from primordia.history.series import population
 from primordia.law.world import BirthCause
 from primordia.runs import loop
 from primordia.runs.archive import Archive
@@ -137,7 +139,8 @@ def _settings(config: Config, file: Path, worlds: int, ticks: int) -> Config:
 def _shares(lives: Lives, seed: np.uint64, tick: np.ndarray) -> np.ndarray:
     """Return the share of one world's living that descend from the first genome, float64 (T,)."""
     first = _of_first(lives, seed)
-    alive = np.stack([_alive(lives.take(np.flatnonzero(side)), tick) for side in (first, ~first)])
+    sides = (lives.take(np.flatnonzero(side)) for side in (first, ~first))
+    alive = np.stack([population(side, tick) for side in sides])
     total = alive.sum(axis=0)
     return np.where(total > 0, alive[0] / np.maximum(total, 1), np.nan)
 
@@ -147,15 +150,6 @@ def _of_first(lives: Lives, seed: np.uint64) -> np.ndarray:
 
     Founders take the genomes in turn by seed and birth number; see `law.heredity`.
     """
-    founder = lives.birth_cause == BirthCause.FOUNDER
-    above = np.where(founder, np.arange(len(lives)), lives.parent_row)
-    while (above != above[above]).any():  # each round doubles the generations that are followed
-        above = above[above]
-    return (lives.id[above].astype(np.uint64) + seed) % np.uint64(2) == 0
-
-
-def _alive(lives: Lives, tick: np.ndarray) -> np.ndarray:
-    """Return how many of these lives go on at the end of each tick, int64 (T,)."""
-    ended = np.sort(lives.ended[lives.died])
-    born = np.searchsorted(np.sort(lives.born), tick, side="right")
-    return born - np.searchsorted(ended, tick, side="right")
+    founders = np.flatnonzero(lives.birth_cause == BirthCause.FOUNDER)
+    founder = nearest(lives.parent_row, founders)
+    return (lives.id[founder].astype(np.uint64) + seed) % np.uint64(2) == 0

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from primordia.assays.subjects import GAMES, TICKS, Subjects, of_run
+from primordia.assays.subjects import GAMES, TICKS, Subjects, of_run, spaced
 from primordia.organism.games import lifespans_in_games
 from primordia.organism.players import founders_of
 from primordia.runs.lives import LATE
@@ -84,8 +84,7 @@ def garden(
         numbers = list(zip(lives.id[chosen].tolist(), lives.world[chosen].tolist(), strict=True))
         subjects = of_run(run, numbers, habitat)
         found += _beds(group, subjects, lives.lifespan[chosen], games, ticks)
-    world, players = founders_of(run, worlds, np.full(len(worlds), each))
-    number = np.tile(np.arange(each), len(worlds))
+    world, number, players = founders_of(run, worlds, np.full(len(worlds), each))
     players = players._replace(habitat=subjects.players.habitat)
     fresh = subjects._replace(players=players, organism=number, world=world)
     return found + _beds("founders", fresh, None, games, ticks)
@@ -115,6 +114,4 @@ def _oldest(rows: np.ndarray, lifespan: np.ndarray, count: int) -> np.ndarray:
 
 def _spaced(rows: np.ndarray, lifespan: np.ndarray, count: int) -> np.ndarray:
     """Return rows in the middle of equal parts of the births, without the last; see `shadow`."""
-    births = rows[:-1] if len(rows) > 1 else rows
-    parts = min(count, len(births))
-    return births[((np.arange(parts) + 0.5) * len(births) / parts).astype(int)]
+    return spaced(rows[:-1] if len(rows) > 1 else rows, count)

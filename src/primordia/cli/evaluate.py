@@ -12,7 +12,7 @@ from primordia.cli.table import show_table, spread
 from primordia.errors import InputError
 
 if TYPE_CHECKING:
-    from primordia.comparison.controls import Standing
+    from primordia.assays.controls import Standing
 
 SENSES = {
     "live": "",
@@ -95,7 +95,7 @@ def evaluate(
 
 def show_standings(standings: "list[Standing]", title: str) -> None:
     """Print a row for each group of organisms, and notes on how to read the rows."""
-    from primordia.comparison.controls import OUTCOMES
+    from primordia.assays.controls import OUTCOMES
 
     outcomes = [name for name in OUTCOMES if standings[0].over_worlds(name)]
     rows = []

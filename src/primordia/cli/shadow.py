@@ -10,7 +10,7 @@ from primordia.cli.flags import recorded_device_option, runs_argument, trust_opt
 from primordia.cli.numbers import COUNT, TICKS
 
 if TYPE_CHECKING:
-    from primordia.comparison.shadow import Shadow
+    from primordia.assays.shadow import Shadow
 
 
 @click.command(short_help="Compare organisms to unselected ones of the same pedigree.")

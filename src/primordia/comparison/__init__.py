@@ -1,1 +1,1 @@
-"""Runs side by side."""
+"""Several runs side by side, from their records alone. The units are worlds."""

@@ -25,7 +25,6 @@ from primordia.comparison.survival import Survival, survival
 from primordia.config import Config
 from primordia.errors import InputError
 from primordia.history.extinctions import Extinctions, extinctions
-from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 from primordia.settings.tables import flat
 
@@ -166,7 +165,7 @@ def compare(
     names, settings, rate = _names(runs), differing(configs), runs[0].description.rate
     arms = []
     for number, (run, lived) in enumerate(zip(runs, lives, strict=True)):
-        worlds = _worlds(lived)
+        worlds = lived.by_world()
         survived, dying = survival(lived, len(worlds), age), pace(worlds, begin, end)
         gathered = gathering(run, len(worlds), begin, end, rate or 1)
         measured = {
@@ -196,7 +195,7 @@ def compare(
 def _common_ticks(runs: Sequence[Records], configs: Sequence[Config]) -> tuple[int, int]:
     """Return the first and last tick between which all worlds of all runs are on record."""
     begun = [config.begins for config in configs]
-    ended = [min(int(world.ended.max(initial=0)) for world in _worlds(run.lives)) for run in runs]
+    ended = [min(int(world.ended.max(initial=0)) for world in run.lives.by_world()) for run in runs]
     if 0 < max(begun) >= min(ended):
         late, early = runs[begun.index(max(begun))], runs[ended.index(min(ended))]
         raise InputError(
@@ -219,11 +218,6 @@ def _known_everywhere(values: ArrayLike) -> Measured:
     """Return values that are known in every world."""
     value = np.asarray(values, float)
     return Measured(value, np.ones(value.shape, bool))
-
-
-def _worlds(lives: Lives) -> list[Lives]:
-    """Return the lives of each world."""
-    return [lives.of_world(world) for world in range(lives.worlds)]
 
 
 def _configs(runs: Sequence[Records]) -> list[Config]:

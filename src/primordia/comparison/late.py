@@ -21,8 +21,7 @@ def last_deaths(run: Records, compared: Comparison) -> list[dict[str, float]]:
     begins, ends = edges[-1 - LATE], edges[-1]
     deaths = run.table("deaths") if "score" in run.schema.tallies else None
     figures = []
-    for number in range(run.lives.worlds):
-        in_world = run.lives.of_world(number)
+    for number, in_world in enumerate(run.lives.by_world()):
         late = in_world.died & (begins < in_world.ended) & (in_world.ended <= ends)
         world = {"late_deaths": int(late.sum()), "late_lifespan": _median(in_world.lifespan[late])}
         if deaths is not None:

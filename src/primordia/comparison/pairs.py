@@ -6,6 +6,7 @@ neither. This is correct with and without correlation: the interval of correlate
 and the interval of uncorrelated pairs is as wide as for independent worlds.
 """
 
+from math import comb
 from typing import NamedTuple
 
 import numpy as np
@@ -50,3 +51,10 @@ def paired(run: Measured, reference: Measured) -> Paired:
     """Count pairs where the run's value is larger, and where it is smaller; row k of each is pair k."""
     larger, smaller = run.value > reference.high, reference.value > run.high
     return Paired(len(run.value), int(larger.sum()), int(smaller.sum()))
+
+
+def sign_test(larger: int, smaller: int) -> float:
+    """Return the probability of a split at least this uneven if both signs are equally likely."""
+    count = larger + smaller
+    tail = sum(comb(count, k) for k in range(min(larger, smaller) + 1)) / 2**count
+    return min(2 * tail, 1.0)

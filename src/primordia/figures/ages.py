@@ -20,7 +20,7 @@ def draw(run: Records, world: int) -> Figure:
     lives = run.lives.since_fork()
     figure = Figure(figsize=(style.PAGE, 2.4))
     over_time, over_births, dead = figure.subplots(1, 3, sharey=True)
-    worlds = [lives.of_world(world) for world in range(lives.worlds)]
+    worlds = lives.by_world()
     _over_time(over_time, worlds, style.time_label(lives))
     _over_births(over_births, worlds)
     _lifespans(dead, lives)
@@ -31,7 +31,9 @@ def draw(run: Records, world: int) -> Figure:
 
 def _over_time(axes: Axes, worlds: list[Lives], time: str) -> None:
     ticks = series.moments(max(int(world.ended.max()) for world in worlds))
-    style.curves(axes, ticks, _positive(series.curve_by_world(series.mean_age, worlds, ticks)))
+    style.curves(
+        axes, ticks, series.positive(series.curve_by_world(series.mean_age, worlds, ticks))
+    )
     style.time_axis(axes, int(ticks[-1]), time)
     style.title(axes, "Mean age of the living over time", style.worlds_key(len(worlds)))
     axes.set_ylabel("age (ticks)")
@@ -44,7 +46,7 @@ def _over_births(axes: Axes, worlds: list[Lives]) -> None:
     for row, world in zip(ages, worlds, strict=True):
         here = number[number <= len(world)]
         row[: len(here)] = series.mean_age(world, world.seen[here - 1])
-    style.curves(axes, number, _positive(ages))
+    style.curves(axes, number, series.positive(ages))
     style.linear(axes.xaxis)
     style.title(axes, "Mean age of the living over births", style.worlds_key(len(worlds)))
     axes.set(xlabel="organisms born so far", xlim=(0, longest + 1))
@@ -81,8 +83,3 @@ def quartiles(number: np.ndarray, lifespan: np.ndarray) -> np.ndarray:
     return np.array(
         [(number[part].mean(), *np.percentile(lifespan[part], [25, 50, 75])) for part in parts]
     ).T
-
-
-def _positive(values: np.ndarray) -> np.ndarray:
-    """Return the values, with NaN in place of values that a logarithmic axis cannot show."""
-    return np.where(values > 0, values, np.nan)

@@ -37,14 +37,15 @@ def draw(run: Records, world: int) -> Figure:
 
 
 def _living(axes: Axes, lives: Lives, cells: int) -> None:
-    worlds = [lives.of_world(world) for world in range(lives.worlds)]
     ticks = series.moments(int(lives.ended.max()))
     axes.axhline(cells, color=style.FAINT, linewidth=0.8, zorder=0)
     axes.annotate(
         f"all {cells:,} cells", (0.02, cells), (0, 2), color=style.SOFT,
         xycoords=axes.get_yaxis_transform(), textcoords="offset points",
     )  # fmt: skip
-    style.curves(axes, ticks, series.curve_by_world(series.population, worlds, ticks), LIVING)
+    style.curves(
+        axes, ticks, series.curve_by_world(series.population, lives.by_world(), ticks), LIVING
+    )
     style.linear(axes.yaxis)
     style.title(axes, "Population", style.worlds_key(lives.worlds))
     axes.set(ylabel="organisms", ylim=(0, 1.12 * cells))
@@ -67,17 +68,26 @@ def _fates(axes: Axes, lives: Lives, causes: list[Cause]) -> None:
 
 
 def _rates(axes: Axes, lives: Lives, causes: list[Cause]) -> None:
-    """Draw births and deaths in bins of time, each divided by the number of ticks of all worlds."""
-    edges = series.bins(int(lives.ended.max()))
-    ends = np.array([lives.of_world(world).ended.max() for world in range(lives.worlds)])
-    ticks = series.exposure(np.zeros_like(ends), ends, edges)
-    deaths = [(lives.ended[lives.cause == cause], COLOURS[cause]) for cause in causes]
-    for at, colour in [(lives.born, style.INK), *deaths]:
-        rate = series.per_tick(at, ticks, edges)
-        axes.plot(series.middle(edges), rate, ".-", color=colour, markersize=3)
+    """Draw births and deaths in bins of time."""
+    middle, births, deaths = rates(lives)
+    for rate, colour in [(births, style.INK), *((deaths[each], COLOURS[each]) for each in causes)]:
+        axes.plot(middle, rate, ".-", color=colour, markersize=3)
     style.title(axes, "Births and deaths", {"births": style.INK} | _cause_key("deaths", causes))
     style.logarithmic(axes.yaxis)
     axes.set_ylabel("per tick of a world" if lives.worlds > 1 else "per tick")
+
+
+def rates(lives: Lives) -> tuple[np.ndarray, np.ndarray, dict[Cause, np.ndarray]]:
+    """Return the middles of bins of time, and the births and deaths in each bin, float64 (B,).
+
+    They are divided by the ticks that all worlds have lived in the bin. Deaths are given by cause.
+    """
+    edges = series.bins(int(lives.ended.max()))
+    ends = np.array([world.ended.max() for world in lives.by_world()])
+    ticks = series.exposure(np.zeros_like(ends), ends, edges)
+    at = {cause: lives.ended[lives.cause == cause] for cause in Cause}
+    deaths = {cause: series.per_tick(of, ticks, edges) for cause, of in at.items() if len(of)}
+    return series.middle(edges), series.per_tick(lives.born, ticks, edges), deaths
 
 
 def _cause_key(heading: str, causes: list[Cause]) -> dict[str, str]:

@@ -8,7 +8,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter
 
 from primordia.config import Config
 from primordia.figures import style
-from primordia.history.clades import Clades, crowd_size, find_clades
+from primordia.phylogeny.clades import Clades, clades_of, crowd_size
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 
@@ -50,11 +50,6 @@ def draw(run: Records, world: int) -> Figure:
     _time_axis(axes, here)
     _mark_renewals(axes, here, clades)
     return figure
-
-
-def clades_of(lives: Lives) -> Clades:
-    """Return the lines of descent of one world."""
-    return find_clades(lives.parent_row, lives.born, lives.ended, lives.died, crowd_size(lives))
 
 
 def occupants(lives: Lives, cells: np.ndarray, ticks: np.ndarray) -> np.ndarray:

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from primordia import files
+from primordia.history import series
 from primordia.runs.lives import Lives
 
 COLUMN, PAGE = 3.4, 7.0
@@ -129,10 +130,7 @@ def curves(axes: Axes, x: np.ndarray, ys: np.ndarray, colour: str = BLUE) -> Non
         axes.plot(x, ys[0], color=colour)
         return
     axes.plot(x, ys.T, color=colour, linewidth=0.4, alpha=min(0.3, 6 / len(ys)))
-    enough = np.isfinite(ys).mean(axis=0) >= 0.5
-    quartiles = np.full((3, len(x)), np.nan)
-    if enough.any():
-        quartiles[:, enough] = np.nanpercentile(ys[:, enough], [25, 50, 75], axis=0)
+    quartiles = series.spread(ys)
     axes.fill_between(x, quartiles[0], quartiles[2], color=colour, alpha=0.25, linewidth=0)
     axes.plot(x, quartiles[1], color=colour)
 

@@ -14,7 +14,7 @@ WINDOWS, ENOUGH = 20, 200
 def draw(run: Records, world: int) -> Figure | None:
     """Draw p, v and s (1 - p (1 - v)) over births; None if there are too few births to measure v."""
     lives = run.lives.since_fork()
-    worlds = [lives.of_world(each) for each in range(lives.worlds)]
+    worlds = lives.by_world()
     longest = max(map(len, worlds))
     windows = int(np.clip(longest // ENOUGH, 1, WINDOWS))
     edges = np.linspace(0, longest, windows + 1).astype(np.int64)

@@ -1,15 +1,16 @@
 """The colours of a world's cells, moment by moment.
 
-The hue shows the line of descent, by the rule of `history.lines`. Cells are lighter with age, flash at a
-birth, and fade after a death.
+The hue shows the line of descent, by the rule of `phylogeny.clades`. Cells are lighter with age, flash at
+a birth, and fade after a death.
 """
 
 from collections.abc import Iterator
 
 import numpy as np
 
-from primordia.figures.spacetime import EMPTY, clades_of, line_codes, occupants
+from primordia.figures.spacetime import EMPTY, line_codes, occupants
 from primordia.live.paint import HUES, colour
+from primordia.phylogeny.clades import clades_of
 from primordia.runs.lives import Lives
 
 GROUND = np.array([22, 25, 33], np.float32)

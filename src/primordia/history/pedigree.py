@@ -1,9 +1,10 @@
 """Pedigrees: the genomes of many organisms, rebuilt from the records or with new random draws.
 
-The births of a pedigree are repeated generation by generation. With the recorded draws, the results
-are the organisms' own genomes, as in `rebuilding`. With new draws, the results are the genomes of the
-neutral shadow: the same parents and times of birth, but other founders and mutations, which were
-never selected (Bedau & Packard 1992).
+The births of a pedigree are repeated generation by generation, by the rule that made them
+(`law.heredity`). A mutation gives the same bits on every device and with every version of the packages.
+With the recorded draws, the results are the organisms' own genomes. With new draws, the results are
+the genomes of the neutral shadow: the same parents and times of birth, but other founders and
+mutations, which were never selected (Bedau & Packard 1992).
 """
 
 from collections import Counter
@@ -15,6 +16,7 @@ from jax import Array
 from primordia import device
 from primordia.compiled import shared
 from primordia.errors import Trouble
+from primordia.history.ancestry import places_of, with_ancestors
 from primordia.history.births import genome_in, recorded
 from primordia.history.climate import PastClimate
 from primordia.law.heredity import Heredity
@@ -41,107 +43,74 @@ def genomes(run: Records, rows: np.ndarray, redrawn: bool = False) -> np.ndarray
             recorded.
     """
     device.prepare()
-    pedigree, worlds = _Pedigree(run, redrawn), run.lives.world[rows]
+    past, worlds = PastClimate(run), run.lives.world[rows]
     found = np.zeros((len(rows), run.layout.length), np.float32)
     for world in steps(np.unique(worlds), "rebuilding genomes"):
-        found[worlds == world] = pedigree.genomes(rows[worlds == world])
+        here = rows[worlds == world]
+        found[worlds == world] = _Pedigree(run, past, here, redrawn).genomes(here)
     return found
 
 
 class _Pedigree:
-    """Repeats the births of a run from its records."""
+    """The births of organisms of one world and of all their ancestors, A in all, sorted by row."""
 
-    def __init__(self, run: Records, redrawn: bool) -> None:
-        self._run, self._lives, self._past = run, run.lives, PastClimate(run)
+    def __init__(self, run: Records, past: PastClimate, rows: np.ndarray, redrawn: bool) -> None:
+        lives = run.lives
+        root = (lives.birth_cause == BirthCause.FOUNDER) | lives.inherited
+        both = [np.where(root, -1, of) for of in (lives.parent_row, _mate_rows(run))]
+        self._run, self._members = run, with_ancestors(rows, *both)
+        self._parents, self._mates = (places_of(self._members, of[self._members]) for of in both)
+        self._births = births = lives.take(self._members)
+        self._notes = run.notes_of(births)
+        self._climate = past.of_lives(births, births.born)
+        seeds = wide(run.world_seeds[births.world])
+        seeds = stream(seeds, Purpose.SHADOW, wide(0)) if redrawn else seeds
+        # JAX takes entries ten times as slowly as NumPy.
+        self._counts = jax.device_get((seeds, wide(births.id), wide(births.born)))
         self._redraws_notes = redrawn and _inherits_notes(run.heredity.mutation)
         self._repeat = shared(_repeat, run.heredity, self._redraws_notes)
-        seeds = wide(run.world_seeds)
-        seeds = stream(seeds, Purpose.SHADOW, wide(0)) if redrawn else seeds
-        self._seeds = jax.device_get(seeds)  # JAX takes entries ten times as slowly
 
     def genomes(self, rows: np.ndarray) -> np.ndarray:
-        """Return the genomes of organisms of one world, (K, P)."""
-        members, parents, mates, generation = self._ancestry(rows)
-        wanted = np.searchsorted(members, rows)
-        made = _Made(self._run.layout.length, wanted, parents, mates)
-        notes = self._run.notes_of(self._lives.take(members))
+        """Return the genomes of some of the organisms, (K, P)."""
+        wanted, generation = places_of(self._members, rows), self._generations()
+        made = _Made(self._run.layout.length, wanted, self._parents, self._mates)
         for place in np.flatnonzero(generation < 0):
-            made.put(np.array([place]), self._at_the_fork(members[place])[None])
+            made.put(np.array([place]), self._at_the_fork(place)[None])
         for number in steps(range(int(generation.max()) + 1), "rebuilding genomes"):
             now = np.flatnonzero(generation == number)
             for first in range(0, len(now), AT_ONCE):
-                some = now[first : first + AT_ONCE]
-                self._make(made, notes, members[some], some, parents[some], mates[some])
+                self._make(made, now[first : first + AT_ONCE])
         return np.stack([made.genomes[place] for place in wanted])
 
-    def _at_the_fork(self, row: int) -> np.ndarray:
+    def _at_the_fork(self, place: int) -> np.ndarray:
         assert self._run.origin is not None
-        number, world = int(self._lives.id[row]), int(self._lives.world[row])
+        number, world = int(self._births.id[place]), int(self._births.world[place])
         return genome_in(self._run.origin, self._run.layout, number, world)
 
-    def _ancestry(self, rows: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Return the rows of organisms and all their ancestors, ascending, each (A,).
-
-        Also return, for each row, the indices of its parent and mate among these rows (-1 for none)
-        and its generation: 0 for founders, -1 for organisms that were alive at a fork.
-        """
-        lives, known = self._lives, np.zeros(len(self._lives), bool)
-        root = (lives.birth_cause == BirthCause.FOUNDER) | lives.inherited
-        mate_row = self._mate_rows()
-        new = np.unique(rows)
-        while len(new):
-            known[new] = True
-            inner = new[~root[new]]
-            older = np.unique([lives.parent_row[inner], mate_row[inner]])
-            new = older[(older >= 0) & ~known[older]]
-        members = np.flatnonzero(known)
-        parents, mates = (
-            _places(members, np.where(root[members], -1, of[members]))
-            for of in (lives.parent_row, mate_row)
-        )
-        generation = np.where(lives.inherited[members], -1, 0)
+    def _generations(self) -> np.ndarray:
+        """Return generations, int64 (A,): 0 for founders, -1 for organisms alive at a fork."""
+        parents, mates = self._parents, self._mates
+        generation = np.where(self._births.inherited, -1, 0)
         for place in np.flatnonzero(parents >= 0):  # parents have lower rows than children
-            both = generation[parents[place]], generation[mates[place]] if mates[place] >= 0 else 0
-            generation[place] = max(*both, 0) + 1
-        return members, parents, mates, generation
+            of_mate = generation[mates[place]] if mates[place] >= 0 else 0
+            generation[place] = max(generation[parents[place]], of_mate, 0) + 1
+        return generation
 
-    def _mate_rows(self) -> np.ndarray:
-        """Return the row of each organism's mate, int64 (L,); -1 without a mate."""
-        lives = self._lives
-        number = self._run.mates_of(lives)
-        rows = lives.rows_of(lives.world, number)
-        odd = (number >= 0) & ((rows < 0) | (number >= lives.id))
-        if odd.any():
-            raise Trouble(
-                f"the births are damaged: the mate of organism {lives.id[odd][0]} was not born"
-                " before it"
-            )
-        return rows
-
-    def _make(
-        self,
-        made: "_Made",
-        notes: np.ndarray,
-        rows: np.ndarray,
-        places: np.ndarray,
-        parents: np.ndarray,
-        mates: np.ndarray,
-    ) -> None:
+    def _make(self, made: "_Made", places: np.ndarray) -> None:
         """Repeat births, and put the genomes and notes of the newborn into their places."""
-        fill = np.arange(AT_ONCE if len(rows) > FEW else FEW) % len(rows)
-        births, before = self._lives.take(rows[fill]), np.maximum(parents[fill], 0)
-        climate = self._past.of_lives(births, births.born)
+        fill = np.resize(places, AT_ONCE if len(places) > FEW else FEW)
+        births, parents, mates = self._births, self._parents[fill], self._mates[fill]
         genome, own = self._repeat(
-            (self._seeds.take(births.world), wide(births.id), wide(births.born)),
-            (births.cell, births.birth_cause == BirthCause.FOUNDER),
-            climate,
-            (made.take(parents[fill]), made.take(mates[fill]), mates[fill] >= 0),
-            notes[before] if self._redraws_notes else notes[places[fill]],
+            tuple(each.take(fill) for each in self._counts),
+            (births.cell[fill], births.birth_cause[fill] == BirthCause.FOUNDER),
+            {name: values[fill] for name, values in self._climate.items()},
+            (made.take(parents), made.take(mates), mates >= 0),
+            self._notes[np.maximum(parents, 0) if self._redraws_notes else fill],
         )
-        made.put(places, np.asarray(genome)[: len(rows)])
-        notes[places] = np.asarray(own)[: len(rows)]
-        made.release(parents)
-        made.release(mates)
+        made.put(places, np.asarray(genome)[: len(places)])
+        self._notes[places] = np.asarray(own)[: len(places)]
+        made.release(self._parents[places])
+        made.release(self._mates[places])
 
 
 class _Made:
@@ -171,9 +140,16 @@ class _Made:
                 del self.genomes[place]
 
 
-def _places(members: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Return the indices of rows among the ascending members; -1 for row -1."""
-    return np.where(rows < 0, -1, np.searchsorted(members, rows))
+def _mate_rows(run: Records) -> np.ndarray:
+    """Return the row of each organism's mate, int64 (L,); -1 without a mate."""
+    lives, number = run.lives, run.mates_of(run.lives)
+    rows = lives.rows_of(lives.world, number)
+    odd = (number >= 0) & ((rows < 0) | (number >= lives.id))
+    if odd.any():
+        raise Trouble(
+            f"the births are damaged: the mate of organism {lives.id[odd][0]} was not born before it"
+        )
+    return rows
 
 
 def _inherits_notes(mutation: Mutation) -> bool:

@@ -44,6 +44,20 @@ def mean_age(lives: Lives, ticks: np.ndarray) -> np.ndarray:
     return np.where(alive > 0, (ticks * alive - born) / np.maximum(alive, 1), np.nan)
 
 
+def spread(values: np.ndarray) -> np.ndarray:
+    """Return the quartiles of worlds (W, X) if at least half of them have a value, else NaN: (3, X)."""
+    enough = np.isfinite(values).mean(axis=0) >= 0.5
+    quartiles = np.full((3, values.shape[1]), np.nan)
+    if enough.any():
+        quartiles[:, enough] = np.nanpercentile(values[:, enough], [25, 50, 75], axis=0)
+    return quartiles
+
+
+def positive(values: np.ndarray) -> np.ndarray:
+    """Return the values, with NaN in place of values that a logarithmic axis cannot show."""
+    return np.where(values > 0, values, np.nan)
+
+
 def exposure(start: np.ndarray, stop: np.ndarray, edges: np.ndarray) -> np.ndarray:
     """Return how many ticks all lives, from `start` to `stop`, spend in each bin of `edges`, int64."""
     return np.diff(_lived_by(start, edges) - _lived_by(stop, edges))

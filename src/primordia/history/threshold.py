@@ -58,8 +58,8 @@ def threshold(run: Records, after: float = LATE) -> list[Threshold]:
         run: the run, or an arm.
         after: share of a world's births after which a birth is late.
     """
-    worlds = (run.lives.of_world(world) for world in range(run.lives.worlds))
-    return [_measured(world, families(lives, after)) for world, lives in enumerate(worlds)]
+    worlds = enumerate(run.lives.by_world())
+    return [_measured(world, families(lives, after)) for world, lives in worlds]
 
 
 def over_births(world: int, lives: Lives, edges: np.ndarray) -> list[Threshold]:

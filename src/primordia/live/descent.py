@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from primordia.history.lines import CROWD, Lines, Turnover, turnovers
+from primordia.phylogeny.clades import CROWD, BirthsAndDeaths, Lines, births_and_deaths
 from primordia.random.wide import to_host
 from primordia.runs.loop import Status
 
@@ -27,18 +27,18 @@ class Descent:
         law, events = status.engine.law, status.engine.events
         if shown * law.cells > self.CELLS:
             return self._give_up()
-        happened = turnovers(events, law.cells, shown)
+        happened = births_and_deaths(events, law.cells, shown)
         count = sum(len(each.born) + len(each.dead) for each in happened)
         if self._followed + count > self.EVENTS * (1 + status.wall_s):
             return self._give_up()
         self._followed += count
         now = set(range(shown))
         self._throughout = now if self._throughout is None else self._throughout & now
-        for world, turnover in enumerate(happened):
+        for world, new in enumerate(happened):
             if world in self.lines:
-                self.lines[world].follow(turnover)
+                self.lines[world].follow(new)
             else:
-                self.lines[world] = _first_lines(status, world, turnover)
+                self.lines[world] = _first_lines(status, world, new)
         for world in [each for each in self.lines if each >= shown]:
             del self.lines[world]
 
@@ -53,13 +53,13 @@ class Descent:
         self.lines, self._throughout = {}, set()
 
 
-def _first_lines(status: Status, world: int, turnover: Turnover) -> Lines:
+def _first_lines(status: Status, world: int, new: BirthsAndDeaths) -> Lines:
     """Return the lines of a world after its first chunk, from genesis on if it was in the chunk."""
     organisms, cells = status.engine.state.world.organisms, status.engine.law.cells
     crowd = min(CROWD, max(cells // 2, 1))
-    if len(turnover.born) and turnover.born[0] == 0:
+    if len(new.born) and new.born[0] == 0:
         lines = Lines([], crowd)
-        lines.follow(turnover)
+        lines.follow(new)
         return lines
     here = slice(world * cells, (world + 1) * cells)
     alive, number = np.asarray(organisms.alive)[here], to_host(organisms.number)[here]

@@ -8,11 +8,11 @@ from typing import NamedTuple
 import numpy as np
 from rich.segment import Segment
 
-from primordia.history.lines import Lines
 from primordia.law.law import Law
 from primordia.law.world import World
 from primordia.live.forms import Form, Ring, Room, form_of, part_of
 from primordia.live.paint import EMPTY, FAINT, Cells, Row, padded, shades
+from primordia.phylogeny.clades import Lines
 from primordia.random.wide import Wide, to_host
 
 KEPT = 512

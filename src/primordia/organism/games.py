@@ -15,10 +15,9 @@ from primordia.organism.playing.seats import Frozen, Manner, Seats, Stretch
 from primordia.progress import steps, tell
 from primordia.random.wide import Wide
 
-AT_ONCE = 128
-"""Default number of games played side by side; the games of one player are never separated."""
-AT_ONCE_IN_JAX = 1024
-"""The default number for a habitat in JAX, where a game needs little more memory than a genome."""
+AT_ONCE = {"host": 128, "jax": 1024}
+"""Games that are played side by side, by kind of habitat; a game in JAX needs little more memory than a
+genome."""
 MIX = np.uint64(0x9E3779B97F4A7C15)
 """An odd number that mixes the bits of courses."""
 
@@ -79,7 +78,6 @@ def play(
     *,
     frozen: Frozen | None = None,
     script: Games | None = None,
-    at_once: int | None = None,
 ) -> Games:
     """Let each player play a number of games, until all games are over or cut.
 
@@ -89,16 +87,8 @@ def play(
         ticks: length at which a game is cut.
         frozen: the inputs of each player, senses and memory, whose values stay as at the start of a game.
         script: earlier games of the same players, whose actions are repeated regardless of senses.
-        at_once: number of games played side by side.
     """
-    size, parts = max((at_once or AT_ONCE) // games, 1), []
-    for first in steps(range(0, len(players.genomes), size), "playing"):
-        some = slice(first, first + size)
-        part_of_script = script and script._replace(actions=script.actions[some])
-        part_of_frozen = frozen and frozen.take(some)
-        parts.append(
-            _play_at_once(players.take(some), games, ticks, part_of_frozen, part_of_script)
-        )
+    parts = _in_parts(players, games, ticks, frozen, script)
     *arrays, actions = zip(*parts, strict=True)
     return Games._make([*map(np.concatenate, arrays), list(chain.from_iterable(actions))])
 
@@ -112,15 +102,20 @@ def lifespans_in_games(
     players: Players, games: int, ticks: int, frozen: Frozen | None = None
 ) -> np.ndarray:
     """Return each player's lifespan in each game, in ticks; `ticks` is the limit: int64 (K, E)."""
-    at_once = AT_ONCE if players.habitat.kind == "host" else AT_ONCE_IN_JAX
-    size, lived = max(at_once // games, 1), []
+    parts = _in_parts(players, games, ticks, frozen, None)
+    return np.concatenate([part.ticks for part in parts])  # the actions of a part are dropped
+
+
+def _in_parts(
+    players: Players, games: int, ticks: int, frozen: Frozen | None, script: Games | None
+) -> Iterator[Games]:
+    """Play the games of some players at once, then of the next; a player's games are not separated."""
+    size = max(AT_ONCE[players.habitat.kind] // games, 1)
     for first in steps(range(0, len(players.genomes), size), "playing"):
-        # Players play in parts, since games keep all actions of their players.
         some = slice(first, first + size)
-        part = frozen and frozen.take(some)
-        found = play(players.take(some), games, ticks, frozen=part, at_once=at_once)
-        lived.append(found.ticks)
-    return np.concatenate(lived)
+        repeated = script and script._replace(actions=script.actions[some])
+        held = frozen and frozen.take(some)
+        yield _play_at_once(players.take(some), games, ticks, held, repeated)
 
 
 def _play_at_once(

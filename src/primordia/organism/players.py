@@ -27,7 +27,9 @@ def players_of(run: Records, organisms: Sequence[tuple[int, int]]) -> Players:
     return _players(run, genomes, evaluation_keys(run, lives.world, lives.id), climate)
 
 
-def founders_of(run: Records, worlds: np.ndarray, counts: np.ndarray) -> tuple[np.ndarray, Players]:
+def founders_of(
+    run: Records, worlds: np.ndarray, counts: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, Players]:
     """Return alternative founders of worlds, each with a different key.
 
     Args:
@@ -36,13 +38,13 @@ def founders_of(run: Records, worlds: np.ndarray, counts: np.ndarray) -> tuple[n
         counts: number of founders of each world, int (V,).
 
     Returns:
-        the world of each founder, int (K,), and the players, numbered from 0 in each world.
+        the world of each founder, its number in the world, from 0, int (K,) each; and the players.
     """
     world, number = np.repeat(worlds, counts), np.concatenate([np.arange(n) for n in counts])
     genomes = [founders(run, *each) for each in zip(worlds.tolist(), counts.tolist(), strict=True)]
     climate = PastClimate(run).of_worlds(world, run.ends[world])
     keys = stream(wide(run.world_seeds[world]), Purpose.CONTROL, wide(number))
-    return world, _players(run, np.concatenate(genomes), keys, climate)
+    return world, number, _players(run, np.concatenate(genomes), keys, climate)
 
 
 def evaluation_keys(run: Records, world: np.ndarray, number: np.ndarray) -> Wide:

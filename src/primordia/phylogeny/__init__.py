@@ -1,1 +1,1 @@
-"""Who descends from whom: lineages for other tools, lines of descent, selection between lines."""
+"""Who descends from whom in one run, from its records alone: lines of descent, trees, drift."""

@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from primordia.phylogeny.ancestry import places_of, with_ancestors
+from primordia.history.ancestry import places_of, with_ancestors
 from primordia.phylogeny.living import Turnover
 from primordia.runs.lives import Lives
 

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from primordia.errors import InputError
+from primordia.history.ancestry import children, nearest
 from primordia.history.rebuilding import changes, descent
 from primordia.law.world import BirthCause, Cause
-from primordia.phylogeny.ancestry import children, nearest
 from primordia.phylogeny.coalescence import Genealogy
 from primordia.phylogeny.fixation import UNKNOWN, branches, first_ticks
 from primordia.phylogeny.forks import Say, whole_past

@@ -8,7 +8,7 @@ complete, and removed when its last descendant dies.
 
 import numpy as np
 
-from primordia.phylogeny.ancestry import ROWS
+from primordia.history.ancestry import ROWS
 from primordia.phylogeny.living import stops
 from primordia.runs.lives import Lives
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from primordia.phylogeny.ancestry import nearest, places_of
+from primordia.history.ancestry import nearest, places_of
 from primordia.phylogeny.living import NEVER, Turnover
 
 SPANS = 256, 2048

@@ -3,8 +3,8 @@
 import numpy as np
 
 from primordia.errors import InputError
-from primordia.history.clades import crowd_size
-from primordia.phylogeny.ancestry import nearest, places_of
+from primordia.history.ancestry import nearest, places_of
+from primordia.phylogeny.clades import crowd_size
 from primordia.phylogeny.living import Census, Turnover, last_era
 from primordia.runs.lives import Lives
 

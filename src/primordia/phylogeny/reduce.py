@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from primordia.errors import InputError
-from primordia.phylogeny.ancestry import children, nearest, with_ancestors
+from primordia.history.ancestry import children, nearest, with_ancestors
 from primordia.phylogeny.phylogeny import Phylogeny
 
 

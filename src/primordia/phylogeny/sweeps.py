@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from primordia.history.rebuilding import descent
 from primordia.law.world import BirthCause
 from primordia.phylogeny.coalescence import Genealogy
 from primordia.phylogeny.fixation import UNKNOWN, branches, first_ticks
@@ -61,11 +62,8 @@ def _line_of_survivors(era: Lives) -> np.ndarray:
     """Return the rows of a line of descent that ends with a survivor, or with the last to die."""
     if not era.died.all():
         return Genealogy.of(era).trunk()
-    row, line = int(np.argmax(era.ended)), []
-    while row >= 0:
-        line.append(row)
-        row = int(era.parent_row[row])
-    return np.array(line[::-1])
+    last = int(np.argmax(era.ended))
+    return descent(era, int(era.id[last]), int(era.world[last]))
 
 
 def _sweep(era: Lives, row: int, half: int, fixed: int, turnover: Turnover) -> Sweep:

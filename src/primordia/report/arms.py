@@ -3,8 +3,6 @@
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-import numpy as np
-
 from primordia.comparison.comparison import Comparison, compare
 from primordia.comparison.tables import (
     effect_text,
@@ -17,7 +15,6 @@ from primordia.figures import style
 from primordia.figures.comparison import line_styles
 from primordia.history import series
 from primordia.report.curves import Panel, curve, panel, table, thinned
-from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 
 
@@ -92,7 +89,7 @@ def _survival(compared: Comparison, colours: Sequence[str]) -> Panel:
 
 def _over_time(runs: Sequence[Records], colours: Sequence[str]) -> list[Panel]:
     """Return mean age and population of the arms: the median of worlds, over time."""
-    worlds = [_worlds(run.lives.since_fork()) for run in runs]
+    worlds = [run.lives.since_fork().by_world() for run in runs]
     ticks = series.moments(max(int(world.ended.max()) for each in worlds for world in each))
     time = style.time_label(runs[0].lives.since_fork())
     shown = {
@@ -101,24 +98,12 @@ def _over_time(runs: Sequence[Records], colours: Sequence[str]) -> list[Panel]:
     }
     panels = []
     for title, (of, label, log) in shown.items():
-        curves = [
-            curve(name, _median(series.curve_by_world(of, each, ticks), log), colour)
-            for name, each, colour in zip(names(runs), worlds, colours, strict=True)
-        ]
+        curves = []
+        for name, each, colour in zip(names(runs), worlds, colours, strict=True):
+            median = series.spread(series.curve_by_world(of, each, ticks))[1]
+            curves.append(curve(name, series.positive(median) if log else median, colour))
         about = f"{title} over time in each arm, median over worlds."
         panels.append(
             panel(title, about, time, label, [table(ticks, *curves)], log_x=True, log_y=log)
         )
     return panels
-
-
-def _worlds(lives: Lives) -> list[Lives]:
-    return [lives.of_world(world) for world in range(lives.worlds)]
-
-
-def _median(values: np.ndarray, positive: bool) -> np.ndarray:
-    """Return the median of the worlds (W, X) if at least half of them have a value, else NaN."""
-    enough = np.isfinite(values).mean(axis=0) >= 0.5
-    middle = np.full(values.shape[1], np.nan)
-    middle[enough] = np.nanmedian(values[:, enough], axis=0)
-    return np.where(middle > 0, middle, np.nan) if positive else middle

@@ -9,11 +9,10 @@ from primordia.comparison.survival import survival
 from primordia.engine.tallies import tally_columns
 from primordia.figures import style
 from primordia.figures.ages import quartiles
-from primordia.figures.population import COLOURS, LIVING
+from primordia.figures.population import COLOURS, LIVING, rates
 from primordia.figures.survival import COHORTS, quarters
 from primordia.history import series
 from primordia.history.foraging import foraging
-from primordia.law.world import Cause
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 
@@ -31,13 +30,13 @@ Kind = Literal["line", "faint", "low", "high", "dots", "steps", "limit"]
 def panels(run: Records) -> list[Panel]:
     """Return all panels of a run."""
     lives = run.lives.since_fork()
-    worlds = [lives.of_world(world) for world in range(lives.worlds)]
+    worlds = lives.by_world()
     time = style.time_label(lives)
     return [
         _ages(worlds, time),
         _deaths(lives),
         _living(worlds, run.config.cells, time),
-        _rates(worlds, lives, time),
+        _rates(lives, time),
         _survival(lives),
         *_foraging(run),
         *_counts(run),
@@ -85,17 +84,14 @@ def over_worlds(
     """Return a table: median and quartiles of worlds (W, X), and each world's curve if they are few."""
     if len(values) == 1:
         return table(x, curve(name, values[0], colour))
-    enough = np.isfinite(values).mean(axis=0) >= 0.5
-    spread = np.full((3, len(x)), np.nan)
-    if enough.any():
-        spread[:, enough] = np.nanpercentile(values[:, enough], [25, 50, 75], axis=0)
+    low, median, high = series.spread(values)
     few = values if each and len(values) <= FEW else values[:0]
     return table(
         x,
         *(curve("", world, colour, "faint") for world in few),
-        curve("", spread[2], colour, "high"),
-        curve("", spread[0], colour, "low"),
-        curve(f"{name}, median and quartiles of {len(values)} worlds", spread[1], colour),
+        curve("", high, colour, "high"),
+        curve("", low, colour, "low"),
+        curve(f"{name}, median and quartiles of {len(values)} worlds", median, colour),
     )
 
 
@@ -104,7 +100,7 @@ def _ages(worlds: list[Lives], time: str) -> Panel:
     ages = series.curve_by_world(series.mean_age, worlds, ticks)
     return panel(
         "Mean age of the living", "The mean age of the living over time, in ticks.", time,
-        "age (ticks)", [over_worlds("mean age", ticks, _positive(ages), style.BLUE)],
+        "age (ticks)", [over_worlds("mean age", ticks, series.positive(ages), style.BLUE)],
         log_x=True, log_y=True,
     )  # fmt: skip
 
@@ -146,20 +142,16 @@ def _living(worlds: list[Lives], cells: int, time: str) -> Panel:
     )  # fmt: skip
 
 
-def _rates(worlds: list[Lives], lives: Lives, time: str) -> Panel:
-    """Return rates of births, and of deaths by cause, in bins: events divided by the worlds' ticks."""
-    edges = series.bins(int(lives.ended.max()))
-    ends = np.array([world.ended.max() for world in worlds])
-    ticks = series.exposure(np.zeros_like(ends), ends, edges)
-    shown = [("births", lives.born, style.INK)]
-    for cause in Cause:
-        if (here := lives.cause == cause).any():
-            shown.append((f"deaths: {cause.label}", lives.ended[here], COLOURS[cause]))
-    curves = [curve(name, series.per_tick(at, ticks, edges), each) for name, at, each in shown]
+def _rates(lives: Lives, time: str) -> Panel:
+    """Return rates of births, and of deaths by cause, in bins of time."""
+    middle, births, deaths = rates(lives)
+    curves = [curve("births", births, style.INK)] + [
+        curve(f"deaths: {cause.label}", rate, COLOURS[cause]) for cause, rate in deaths.items()
+    ]
     return panel(
         "Births and deaths", "Births and deaths per tick of a world over time, by cause.", time,
-        "per tick of a world" if len(worlds) > 1 else "per tick",
-        [table(series.middle(edges), *curves)], log_x=True, log_y=True,
+        "per tick of a world" if lives.worlds > 1 else "per tick",
+        [table(middle, *curves)], log_x=True, log_y=True,
     )  # fmt: skip
 
 
@@ -230,8 +222,3 @@ def _at(ticks: np.ndarray, sampled: np.ndarray, values: np.ndarray) -> np.ndarra
     if not len(sampled):
         return np.full(len(ticks), np.nan)
     return np.where(sampled[place] == ticks, values[place], np.nan)
-
-
-def _positive(values: np.ndarray) -> np.ndarray:
-    """Return the values, with NaN for those that a logarithmic axis cannot show."""
-    return np.where(values > 0, values, np.nan)

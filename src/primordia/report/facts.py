@@ -4,11 +4,9 @@ import shlex
 from pathlib import Path
 from typing import Any
 
-from primordia import config as configs
 from primordia.config import Config
-from primordia.errors import InputError
 from primordia.runs.records import Records
-from primordia.settings.tables import NONE, files_in, flat, replaced, tasks
+from primordia.settings.tables import NONE, files_in, flat, replaced
 
 
 def facts(run: Records, info: dict[str, Any]) -> dict[str, Any]:
@@ -59,9 +57,8 @@ def _shown(run: Records) -> Config:
 def commands(config: Config, name: str, own: bool) -> list[str]:
     """Return the commands that repeat a run and show whether the result is the same.
 
-    The commands are enough if the task is built in and the run's settings fit into flags. Other
-    runs need the `config.toml` in the page. A fork, or a run with its own genomes, code or files, needs
-    its directory.
+    The first command needs the `config.toml` in the page. A fork, or a run with its own genomes, code
+    or files, needs its directory.
 
     Args:
         config: the settings.
@@ -70,27 +67,7 @@ def commands(config: Config, name: str, own: bool) -> list[str]:
     """
     if config.fork or config.ancestors or own:
         return [shlex.join(["primordia", "verify", name])]
-    flags = _flags(config)
-    what = ["config.toml"] if flags is None else [config.task, *flags]
-    return [
-        shlex.join(["primordia", "run", *what, "--out", "again"]),
-        "primordia info again --json",
-    ]
-
-
-def _flags(config: Config) -> list[str] | None:
-    """Return the flags by which a run differs from a built-in task; None if flags cannot express this."""
-    if config.task not in tasks():
-        return None
-    try:
-        base = flat(configs.load(config.task).model_dump(mode="json"))
-    except InputError:  # a package is missing
-        return None
-    own = flat(config.model_dump(mode="json"))
-    changed = {name: value for name, value in own.items() if base.get(name, NONE) != value}
-    if base.keys() - own.keys() or any(isinstance(value, list) for value in changed.values()):
-        return None
-    return [word for name, value in changed.items() for word in (f"--{name}", _text(value))]
+    return ["primordia run config.toml --out again", "primordia info again --json"]
 
 
 def _text(value: Any) -> str:

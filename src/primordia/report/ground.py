@@ -15,12 +15,11 @@ from primordia.figures.spacetime import (
     COLUMNS,
     EMPTY,
     INKS,
-    clades_of,
     line_codes,
     line_inks,
     occupants,
 )
-from primordia.history.clades import Clades, crowd_size
+from primordia.phylogeny.clades import Clades, clades_of, crowd_size
 from primordia.report.packed import packed
 from primordia.runs.lives import Lives
 

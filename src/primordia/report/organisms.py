@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
+from primordia.history.ancestry import children, nearest, places_of
 from primordia.law.world import BirthCause, Cause
-from primordia.phylogeny.ancestry import children, nearest, places_of
 from primordia.report.packed import packed
 from primordia.runs.lives import Lives
 

@@ -10,7 +10,6 @@ import sys
 from collections.abc import Callable
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from threading import BoundedSemaphore
 from typing import Any
 
 from primordia.errors import InputError
@@ -19,8 +18,6 @@ from primordia.report.watched import Watched
 HERE = "127.0.0.1"
 PORT = 8321
 """The default port."""
-MOST_LISTENERS = 32
-"""Largest number of pages that wait for events at the same time."""
 QUIET = 10.0
 """Seconds between empty lines to a waiting page; they are sent to notice a closed page."""
 HEADERS = {
@@ -48,7 +45,7 @@ class Server(ThreadingHTTPServer):
         Raises:
             InputError: the port is in use, or the user may not use it.
         """
-        self.watched, self.listeners = watched, BoundedSemaphore(MOST_LISTENERS)
+        self.watched = watched
         try:
             super().__init__((HERE, port), Handler)
         except OSError as error:
@@ -67,7 +64,7 @@ class Server(ThreadingHTTPServer):
 
 
 class Handler(BaseHTTPRequestHandler):
-    """Answers one request."""
+    """Answers one request; other methods than GET are refused by the base class."""
 
     server: Server
     server_version, sys_version = "primordia", ""
@@ -76,69 +73,41 @@ class Handler(BaseHTTPRequestHandler):
     def do_GET(self) -> None:
         """Answer a request with the page, its content or its events."""
         answers: dict[str, Callable[[], None]] = {
-            "/": self._page,
-            "/data": self._data,
-            "/events": self._events,
+            "/": lambda: self._answer("text/html; charset=utf-8", self.server.watched.page()),
+            "/data": lambda: self._answer("application/json", self.server.watched.data()),
+            "/events": self._tell,
         }
         hosts = self.headers.get_all("Host", [])
         if hosts not in ([f"{name}:{self.server.server_port}"] for name in (HERE, "localhost")):
-            self._refuse(HTTPStatus.FORBIDDEN)
+            self.send_error(HTTPStatus.FORBIDDEN)
         elif self.path not in answers:
-            self._refuse(HTTPStatus.NOT_FOUND)
+            self.send_error(HTTPStatus.NOT_FOUND)
         else:
             answers[self.path]()
 
-    do_HEAD = do_GET  # noqa: N815
-
-    def _not_allowed(self) -> None:
-        self._refuse(HTTPStatus.METHOD_NOT_ALLOWED, Allow="GET, HEAD")
-
-    do_POST = do_PUT = do_PATCH = do_DELETE = do_OPTIONS = _not_allowed  # noqa: N815
-
-    def _page(self) -> None:
-        self._answer("text/html; charset=utf-8", self.server.watched.page())
-
-    def _data(self) -> None:
-        self._answer("application/json", self.server.watched.data())
-
-    def _events(self) -> None:
-        """Send an event at each change of the content, until the page is closed."""
-        listeners = self.server.listeners
-        if not listeners.acquire(blocking=False):
-            return self._refuse(HTTPStatus.SERVICE_UNAVAILABLE)
-        try:
-            self._begin(HTTPStatus.OK, "text/event-stream")
-            if self.command != "HEAD":
-                self._tell()
-        except OSError:  # the page is closed
-            pass
-        finally:
-            listeners.release()
-
     def _tell(self) -> None:
+        """Send an event at each change of the content, until the page is closed."""
+        self._begin("text/event-stream")
         told = None
         while True:
             state = self.server.watched.news(told, QUIET)
             self.wfile.write(b": \n\n" if state == told else f"data: {state}\n\n".encode())
-            self.wfile.flush()
             told = state
 
     def _answer(self, kind: str, body: bytes) -> None:
-        self._begin(HTTPStatus.OK, kind, **{"Content-Length": str(len(body))})
-        if self.command != "HEAD":
-            self.wfile.write(body)
+        self._begin(kind)
+        self.wfile.write(body)
 
-    def _refuse(self, status: HTTPStatus, **headers: str) -> None:
-        self.close_connection = True
-        self._begin(status, "text/plain; charset=utf-8", **headers)
-        if self.command != "HEAD":
-            self.wfile.write(f"{status.value} {status.phrase}\n".encode())
-
-    def _begin(self, status: HTTPStatus, kind: str, **headers: str) -> None:
-        self.send_response(status)
-        for name, value in {**HEADERS, "Content-Type": kind, **headers}.items():
-            self.send_header(name, value)
+    def _begin(self, kind: str) -> None:
+        self.send_response(HTTPStatus.OK)
+        self.send_header("Content-Type", kind)
         self.end_headers()
+
+    def end_headers(self) -> None:
+        """Send the headers of every answer, and end the headers."""
+        for name, value in HEADERS.items():
+            self.send_header(name, value)
+        super().end_headers()
 
     def log_message(self, format: str, *args: object) -> None:
         """Print nothing about a request."""

@@ -82,6 +82,10 @@ class Lives:
         rows = self._rows_of_world(world)
         return self if rows == slice(0, len(self)) else self.take(rows)
 
+    def by_world(self) -> "list[Lives]":
+        """Return the lives of each world."""
+        return [self.of_world(world) for world in range(self.worlds)]
+
     def recorded_since(self, tick: int) -> "Lives":
         """Return the lives that a fork at the end of a tick would record; 0 changes nothing."""
         later = self.take(np.flatnonzero(~self.died | (self.ended > tick)))

@@ -3,7 +3,6 @@
 import json
 from collections.abc import Callable, Mapping
 from functools import partial
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -67,7 +66,7 @@ def tell(
     """Print a table for each arm, or one JSON object for all; draw figures if a folder is given.
 
     Args:
-        name: the assay's name, which is also that of its module in `figures.assays` and of its files.
+        name: the assay's name, which is also that of its function in `figures.assays` and of its files.
         found: the results of each arm, by its path.
         as_json: whether JSON is printed.
         out: folder for figures; each of several arms has a folder in it, with the arm's name.
@@ -80,7 +79,9 @@ def tell(
         for arm, of in found.items():
             show_table(*table(arm, of))
     if out is not None:
-        draw = import_module(f"primordia.figures.assays.{name}").draw
+        from primordia.figures import assays
+
+        draw = getattr(assays, name)
         for arm, of in found.items():
             folder = out if len(found) == 1 else out / Path(arm).name
             save_figure(partial(draw, of), folder, name, as_json)

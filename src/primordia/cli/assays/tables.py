@@ -18,7 +18,7 @@ class Told(NamedTuple):
 
 
 def heredity(name: str, found: list[Any]) -> Told:
-    """Return the table of the inheritance of lifespan in each world, `assays.heredity`."""
+    """Return the table of the inheritance of lifespan in each world, `history.heredity`."""
     kinds = ("copies", "mutants", "both")
     words = {
         "slope": "slope",

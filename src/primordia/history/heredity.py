@@ -58,10 +58,8 @@ def heredity(run: Records, after: float = LATE) -> list[Inherited]:
         run: the run, or an arm.
         after: share of a world's births after which a birth is late.
     """
-    return [
-        _of_world(world, families(run.lives.of_world(world), after))
-        for world in range(run.lives.worlds)
-    ]
+    worlds = enumerate(run.lives.by_world())
+    return [_of_world(world, families(lives, after)) for world, lives in worlds]
 
 
 def _of_world(world: int, found: Families) -> Inherited:

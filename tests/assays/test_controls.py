@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import primordia
+from primordia.assays import controls
+from primordia.assays.controls import Group, Standing, evolved, unevolved
 from primordia.brains import genomes
-from primordia.comparison import controls
-from primordia.comparison.controls import Group, Standing, evolved, unevolved
 from primordia.errors import InputError
 from primordia.history.founders import founders
 from primordia.organism.evaluation import Evaluation
@@ -79,7 +79,7 @@ def test_the_best_founder_is_the_last_of_the_longest_lived(poles: primordia.Run)
 def test_no_game_that_chose_an_organism_judges_it(poles: primordia.Run) -> None:
     run = poles.opened()
     best, _ = unevolved(run, 30)
-    world, everyone = founders_of(run, np.arange(2), np.full(2, 30))
+    world, _, everyone = founders_of(run, np.arange(2), np.full(2, 30))
     numbers = np.array([number for number, _ in best.numbers])
     chosen_ones = everyone.take(np.searchsorted(world, np.arange(2)) + numbers)
     np.testing.assert_array_equal(chosen_ones.genomes, best.players.genomes)
@@ -169,9 +169,10 @@ def invented(monkeypatch: pytest.MonkeyPatch) -> Any:
     lives.inherited[[0, 1, 32, 33]] = True
     monkeypatch.setattr(controls, "players_of", lambda run, numbers: numbers)
 
-    def founders_of(_: Any, worlds: np.ndarray, counts: np.ndarray) -> tuple[np.ndarray, Seats]:
+    def founders_of(_: Any, worlds: np.ndarray, counts: np.ndarray) -> tuple:
         world = np.repeat(worlds, counts)
-        return world, Seats(np.arange(len(world)))
+        number = np.concatenate([np.arange(count) for count in counts])
+        return world, number, Seats(np.arange(len(world)))
 
     def lifespans(players: Seats, limit: int) -> np.ndarray:
         """Return lives of which those of founders 2, 9, 16 and so on are the longest."""

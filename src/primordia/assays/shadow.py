@@ -14,7 +14,8 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from primordia.assays.signs import sign_test
+from primordia.assays.subjects import spaced
+from primordia.comparison.pairs import sign_test
 from primordia.comparison.resample import LEAST, interval, resamples
 from primordia.errors import InputError
 from primordia.history import pedigree
@@ -133,13 +134,7 @@ def _sample(worlds: np.ndarray, rows: np.ndarray, most: int) -> np.ndarray:
     limit. Without the last birth, the births up to such a limit are an unbiased sample (Haldane 1945).
     """
     each = (rows[worlds == world][:-1] for world in np.unique(worlds))
-    return np.concatenate([own[_spaced(len(own), most)] for own in each])
-
-
-def _spaced(count: int, most: int) -> np.ndarray:
-    """Return at most `most` indices below `count`, in the middle of equal parts."""
-    parts = min(most, count)
-    return ((np.arange(parts) + 0.5) * count / parts).astype(int)
+    return np.concatenate([spaced(own, most) for own in each])
 
 
 def _lifespans(run: Records, rows: np.ndarray, redrawn: bool, cut: int) -> np.ndarray:

@@ -173,8 +173,7 @@ def _recorded(run: Records, name: str, chosen_from: int, rows: np.ndarray) -> Gr
 def _founders(run: Records, worlds: np.ndarray, counts: np.ndarray) -> list[Group]:
     """Return for each of these worlds the longest-lived of `counts` founders, and some unselected
     ones."""
-    world, everyone = founders_of(run, worlds, counts)
-    number = np.concatenate([np.arange(count) for count in counts])
+    world, number, everyone = founders_of(run, worlds, counts)
     lived = lifespans(everyone, run.config.saturation_ticks)
     places = [np.flatnonzero(world == each) for each in worlds]
     longest = [here[len(here) - 1 - np.argmax(lived[here][::-1])] for here in places]

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from primordia.phylogeny import ancestry
-from primordia.phylogeny.ancestry import FEW, nearest, with_ancestors
+from primordia.history import ancestry
+from primordia.history.ancestry import FEW, nearest, with_ancestors
 from tests.pedigrees import HISTORY, Event, line_to, walked
 from tests.phylogeny.forests import ancestry as walk
 

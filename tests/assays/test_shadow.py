@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from scipy.stats import binomtest
 
 import primordia
-from primordia.comparison import shadow as module
+from primordia.assays import shadow as module
+from primordia.assays.shadow import Shadow, _lifespans, _sample, shadow
 from primordia.comparison.resample import resamples
-from primordia.comparison.shadow import Shadow, _lifespans, _sample, shadow
 from primordia.errors import InputError
 from primordia.history.climate import Climates, PastClimate
 from primordia.law.metabolism import Rates

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from primordia.assays.heredity import heredity, price, slope
 from primordia.history.families import LEAST, families, families_of
+from primordia.history.heredity import heredity, price, slope
 from primordia.runs.lives import Lives, joined
 from tests.assays.lives import COPY, FOUNDER, MUTANT, lives
 

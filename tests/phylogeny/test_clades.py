@@ -1,11 +1,15 @@
 """Lines of descent follow their rule, checked one organism and one tick at a time."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from primordia.history.clades import Clades, crowd_size, find_clades
+from primordia.law.world import Cause
+from primordia.phylogeny.clades import Clades, clades_of, crowd_size
+from primordia.runs.lives import ALIVE
 from tests.synthetic import world_of
 
 FEW = st.lists(st.integers(0, 30), max_size=3)
@@ -42,7 +46,10 @@ class Walked:
 
     def lines(self, crowd: int) -> Clades:
         parent, born, ended = map(np.array, (self.parent, self.born, self.ended))
-        return find_clades(parent, born, ended, ended >= 0, crowd)
+        cause = np.where(ended >= 0, Cause.FATAL, ALIVE).astype(np.int8)
+        blank = world_of([(0, 0, True)] * len(born))
+        lives = replace(blank, parent=parent, born=born, seen=born, ended=ended, cause=cause)
+        return clades_of(lives, crowd)
 
 
 @given(history=HISTORY, crowd=st.integers(1, 4))

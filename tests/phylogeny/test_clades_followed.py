@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from primordia.engine.engine import Engine
 from primordia.errors import Trouble
-from primordia.history.lines import DIES, NO_PARENT, Lines, Turnover, turnovers
 from primordia.law.events import BIRTHS, DEATHS, Events, Rows
+from primordia.phylogeny.clades import DIES, NO_PARENT, BirthsAndDeaths, Lines, births_and_deaths
 from tests import worlds
 
 Event = tuple[int, int, int]
@@ -43,7 +43,7 @@ def followed(events: list[Event], lines: Lines) -> Lines:
     deaths = [event for event in events if event[2] == DIES]
     ticks, born, parent = np.array(births, np.int64).reshape(-1, 3).T
     dead_at, dead, _ = np.array(deaths, np.int64).reshape(-1, 3).T
-    lines.follow(Turnover(born, parent, ticks, dead, dead_at))
+    lines.follow(BirthsAndDeaths(born, parent, ticks, dead, dead_at))
     return lines
 
 
@@ -115,7 +115,7 @@ def test_chunks_of_any_length_give_the_same_lines() -> None:
         lines, limits = Lines([], crowd=8), made.limits({"ticks": 5000})
         while made.any_running(limits):
             made._ticks = ticks
-            lines.follow(turnovers(made.advance(limits), 24, 3)[0])
+            lines.follow(births_and_deaths(made.advance(limits), 24, 3)[0])
         outcomes.append((lines.line_of, lines.takeovers))
     assert outcomes[0] == outcomes[1]
     assert outcomes[0][1]
@@ -134,7 +134,7 @@ def test_the_events_of_a_chunk_are_divided_among_its_worlds() -> None:
     noise = np.full((2, born.shape[1]), 7, np.uint32), np.full((2, died.shape[1]), 1, np.uint32)
     rows = [np.concatenate(each) for each in zip((born, died), noise, strict=True)]
     events: Any = Events(Rows(rows[0], np.int32(4)), Rows(rows[1], np.int32(3)), None)
-    found = [[column.tolist() for column in each] for each in turnovers(events, 4, 3)]
+    found = [[column.tolist() for column in each] for each in births_and_deaths(events, 4, 3)]
     assert found == [
         [[5, 6], [NO_PARENT, 5], [1, 9], [5, high + 7], [12, 13]],
         [[], [], [], [], []],

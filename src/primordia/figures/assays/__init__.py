@@ -1,1 +1,0 @@
-"""Figures of assays: each module has `draw(found) -> Figure`."""
