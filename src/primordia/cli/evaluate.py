@@ -14,7 +14,7 @@ from primordia.errors import InputError
 
 if TYPE_CHECKING:
     from primordia.assays.controls import Standing
-    from primordia.organism.evaluation import Evaluation
+    from primordia.organism.playing.evaluation import Evaluation
 
 SENSES = {
     "live": "",
