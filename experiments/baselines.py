@@ -41,8 +41,8 @@ from primordia.experiments.file import read
 from primordia.experiments.results import table
 from primordia.law.genesis import initial_climate
 from primordia.law.metabolism import Rates
-from primordia.organism.evaluation import judged
-from primordia.organism.games import Players, lifespans
+from primordia.organism.playing.evaluation import judged
+from primordia.organism.playing.games import Players, lifespans
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
 

@@ -24,7 +24,7 @@ from primordia.experiments.results import table
 from primordia.law.genesis import initial_climate
 from primordia.law.law import Law
 from primordia.law.metabolism import Rates
-from primordia.organism.games import Players, play
+from primordia.organism.playing.games import Players, play
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
 from primordia.settings.tables import merged

@@ -24,7 +24,7 @@ from primordia.assays.controls import Group, evolved, unevolved
 from primordia.comparison.tables import spread_text
 from primordia.experiments.results import table
 from primordia.habitats.cartpole.habitat import CartPole
-from primordia.organism.evaluation import judged
+from primordia.organism.playing.evaluation import judged
 
 SPREAD, TICKS = 0.2, 3_000
 GAMES = {"champion": 200, "all alive": 20, "best founder": 200, "founder": 20}

@@ -11,7 +11,7 @@ import pytest
 
 from primordia.comparison import late
 from primordia.experiments import results
-from primordia.organism import diary
+from primordia.organism.reliving import diary
 from primordia.organism.reliving.instant import Stretch
 from primordia.phylogeny.table import table
 from primordia.runs.schema import TABLES, Schema

@@ -1,6 +1,6 @@
 """How far long work is, for a display such as the bar of the command line."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import TypeVar
@@ -30,7 +30,7 @@ def tell(work: str, share: float) -> None:
     _display.get()(work, done + part * share)
 
 
-def steps(items: Sequence[Item], work: str) -> Iterator[Item]:
+def steps(items: Sequence[Item], work: str) -> Generator[Item, None, None]:
     """Yield items, and tell the display before each one the share of the items that are done.
 
     Work that is told in a step counts as a part of this step.

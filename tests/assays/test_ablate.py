@@ -11,7 +11,7 @@ import primordia
 from primordia.assays import ablate as module
 from primordia.assays.ablate import Ablation, _losses, ablate
 from primordia.assays.subjects import Subjects, of_run
-from primordia.organism.games import Players
+from primordia.organism.playing.games import Players
 from primordia.organism.playing.seats import Frozen
 from primordia.runs import loop
 from tests.worlds import MEADOW, config

@@ -15,9 +15,9 @@ from primordia.assays.controls import Group, Standing, evolved, unevolved
 from primordia.brains import genomes
 from primordia.errors import InputError
 from primordia.history.founders import founders
-from primordia.organism.evaluation import Evaluation
-from primordia.organism.games import lifespans, play
-from primordia.organism.players import founders_of
+from primordia.organism.playing.evaluation import Evaluation
+from primordia.organism.playing.games import lifespans, play
+from primordia.organism.playing.players import founders_of
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
 from tests.commands import complains, here

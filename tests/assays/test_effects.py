@@ -22,7 +22,7 @@ from primordia.law.world import Remembered
 from primordia.mutations.calibrated import Calibrated
 from primordia.mutations.contract import Moments
 from primordia.mutations.gaussian import Gaussian
-from primordia.organism.games import Players, lifespans_in_games
+from primordia.organism.playing.games import Players, lifespans_in_games
 from primordia.runs import loop
 from tests.worlds import config
 

@@ -7,7 +7,7 @@ import primordia
 from primordia.assays import garden as module
 from primordia.assays.garden import Bed, _oldest, _spaced, garden
 from primordia.errors import InputError
-from primordia.organism.games import Players
+from primordia.organism.playing.games import Players
 from primordia.runs.lives import Lives
 
 

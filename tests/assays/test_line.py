@@ -12,8 +12,8 @@ from primordia.assays import line as module
 from primordia.assays.line import Line, Step, _changed, line
 from primordia.assays.subjects import of_run
 from primordia.law.world import BirthCause
-from primordia.organism.games import Players
 from primordia.organism.organism import Organism
+from primordia.organism.playing.games import Players
 from primordia.random.wide import to_host
 from tests.assays.lives import COPY, FOUNDER, MUTANT
 from tests.assays.lives import lives as lives_of

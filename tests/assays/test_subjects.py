@@ -14,7 +14,7 @@ from primordia.brains import genomes
 from primordia.config import load
 from primordia.errors import InputError
 from primordia.history.climate import Climates, PastClimate
-from primordia.organism.games import Players, lifespans
+from primordia.organism.playing.games import Players, lifespans
 from primordia.random.wide import to_host
 from primordia.runs.lives import Lives
 

@@ -7,8 +7,8 @@ import pytest
 
 from primordia.assays.controls import Standing
 from primordia.cli import evaluate
-from primordia.organism.evaluation import Evaluation
-from primordia.organism.games import Games
+from primordia.organism.playing.evaluation import Evaluation
+from primordia.organism.playing.games import Games
 from tests.commands import here
 
 

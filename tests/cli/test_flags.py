@@ -15,7 +15,7 @@ from primordia.cli.evaluate import evaluate
 from primordia.cli.evolve import fork, run
 from primordia.config import Config
 from primordia.habitats.contract import find
-from primordia.organism import evaluation
+from primordia.organism.playing import evaluation
 from primordia.runs import loop
 from primordia.settings.fields import setting_fields
 from tests.commands import complains, here

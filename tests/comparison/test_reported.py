@@ -12,7 +12,7 @@ from primordia.comparison.measured import Measured
 from primordia.comparison.moments import first_long, often_saturated
 from primordia.comparison.resample import RESAMPLES, interval
 from primordia.comparison.survival import survival
-from primordia.organism.evaluation import Spread
+from primordia.organism.playing.evaluation import Spread
 from tests.synthetic import LIVED, alive, world_of, worlds_of
 
 Lived = list[tuple[int, int, bool]]

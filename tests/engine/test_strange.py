@@ -17,7 +17,7 @@ import pytest
 import primordia
 from primordia.history.pedigree import genomes
 from primordia.history.summary import summary
-from primordia.organism.evaluation import evaluate
+from primordia.organism.playing.evaluation import evaluate
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import loop
 from primordia.runs.archive import Archive

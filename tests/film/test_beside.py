@@ -170,7 +170,7 @@ def test_a_life_without_a_tick_has_no_picture(monkeypatch: pytest.MonkeyPatch) -
     record = SimpleNamespace(id=np.array([7]), born=np.array([100]))
     life = SimpleNamespace(record=record, begins=100, ends=100)
     monkeypatch.setattr("primordia.film.beside.RelivedLife.of", lambda *_: life)
-    monkeypatch.setattr("primordia.organism.replay.picture_rate", lambda _: 30.0)
+    monkeypatch.setattr("primordia.organism.reliving.replay.picture_rate", lambda _: 30.0)
     with pytest.raises(InputError, match=r"^organism 7 has not lived a tick yet"):
         next(beside.pictures_of(a_run(world_of(LIVED)), 7, 0))
 
@@ -191,9 +191,9 @@ def test_a_life_is_shown_from_its_birth_to_its_end_at_thirty_pictures_a_second(
         return ((0, SimpleNamespace(tick=stretch), age) for age in whole[0][::step])
 
     monkeypatch.setattr("primordia.film.beside.RelivedLife.of", lambda *_: life)
-    monkeypatch.setattr("primordia.organism.replay.picture_rate", lambda _: rate)
-    monkeypatch.setattr("primordia.organism.replay.moments", moments)
-    monkeypatch.setattr("primordia.organism.replay.picture_of", lambda life, stretch, i: i)
+    monkeypatch.setattr("primordia.organism.reliving.replay.picture_rate", lambda _: rate)
+    monkeypatch.setattr("primordia.organism.reliving.replay.moments", moments)
+    monkeypatch.setattr("primordia.organism.reliving.replay.picture_of", lambda life, stretch, i: i)
     ages = [4 + int(picture * rate / 30) for picture in range(30)]
     ages = [age for age in ages if age <= 10]
     pictures: list[Any] = list(islice(beside.pictures_of(a_run(world_of(LIVED)), 0, 0), 30))

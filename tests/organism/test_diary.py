@@ -9,7 +9,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from primordia.law.metabolism import ONE
-from primordia.organism import diary
+from primordia.organism.reliving import diary
 from primordia.organism.reliving.instant import Stretch
 
 COUNTS = ("score", "energy", "lives")

@@ -9,9 +9,9 @@ import pytest
 
 import primordia
 from primordia.errors import InputError
-from primordia.organism import games
-from primordia.organism.evaluation import Evaluation, evaluate
 from primordia.organism.organism import Organism
+from primordia.organism.playing import games
+from primordia.organism.playing.evaluation import Evaluation, evaluate
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.commands import complains, here

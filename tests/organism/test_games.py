@@ -9,9 +9,9 @@ import pytest
 
 from primordia.errors import InputError
 from primordia.habitats.contract import Continuous, Discrete
-from primordia.organism import evaluation
-from primordia.organism.evaluation import Evaluation, Spread, changed, judged
-from primordia.organism.games import Games, Players, _marks
+from primordia.organism.playing import evaluation
+from primordia.organism.playing.evaluation import Evaluation, Spread, changed, judged
+from primordia.organism.playing.games import Games, Players, _marks
 from primordia.organism.playing.seats import Stretch
 from primordia.settings.base import Settings
 from tests.toys import Meadow

@@ -10,9 +10,9 @@ import pytest
 from primordia.errors import Trouble
 from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
-from primordia.organism.evaluation import evaluate
-from primordia.organism.games import play
-from primordia.organism.players import players_of
+from primordia.organism.playing.evaluation import evaluate
+from primordia.organism.playing.games import play
+from primordia.organism.playing.players import players_of
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import loop
 from primordia.runs.archive import Archive

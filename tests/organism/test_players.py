@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from primordia.organism import players
+from primordia.organism.playing import players
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
 

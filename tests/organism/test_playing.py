@@ -10,10 +10,9 @@ from primordia.habitats.contract import JaxHabitat
 from primordia.habitats.on_host import OnHost
 from primordia.law.genesis import body_words
 from primordia.law.metabolism import ONE
-from primordia.organism import games
-from primordia.organism.games import Games, Players, lifespans_in_games, play, stretches
-from primordia.organism.players import players_of
-from primordia.organism.playing import in_jax
+from primordia.organism.playing import games, in_jax
+from primordia.organism.playing.games import Games, Players, lifespans_in_games, play, stretches
+from primordia.organism.playing.players import players_of
 from primordia.organism.playing.seats import ODD, Frozen, Manner, Seats, begun, mark
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide

@@ -11,8 +11,7 @@ import pytest
 
 from primordia.errors import InputError
 from primordia.law.world import Cause
-from primordia.organism import diary, replay
-from primordia.organism.reliving import compare
+from primordia.organism.reliving import compare, diary, replay
 from primordia.organism.reliving.compare import Reliving, Respect
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import checkpoint, directory

@@ -14,7 +14,8 @@ from primordia import files
 from primordia.errors import InputError
 from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
-from primordia.organism import diary, replay, video
+from primordia.organism import video
+from primordia.organism.reliving import diary, replay
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import bundle
 

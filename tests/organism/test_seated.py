@@ -6,9 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from primordia.organism import games
-from primordia.organism.games import Games, Players, play, stretches
-from primordia.organism.playing import in_jax, on_host
+from primordia.organism.playing import games, in_jax, on_host
+from primordia.organism.playing.games import Games, Players, play, stretches
 from primordia.organism.playing.seats import Frozen, Manner, Stretch
 from primordia.random.wide import wide
 

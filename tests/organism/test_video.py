@@ -10,7 +10,8 @@ from PIL import Image
 import primordia
 from primordia.errors import InputError
 from primordia.habitats.cartpole.habitat import CartPole
-from primordia.organism import replay, video
+from primordia.organism import video
+from primordia.organism.reliving import replay
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import loop
 from primordia.runs.archive import Archive

@@ -18,9 +18,9 @@ from primordia.history.heredity import Inherited, heredity
 from primordia.history.info import info
 from primordia.history.summary import summary
 from primordia.history.threshold import Threshold, threshold
-from primordia.organism.evaluation import Evaluation, evaluate
 from primordia.organism.export import export
 from primordia.organism.organism import Organism
+from primordia.organism.playing.evaluation import Evaluation, evaluate
 from primordia.organism.policy import Policy
 from primordia.phylogeny import formats
 from primordia.phylogeny.descent import Ancestors, ancestors

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from primordia.assays.subjects import GAMES, TICKS, Subjects
-from primordia.organism.games import lifespans_in_games
+from primordia.organism.playing.games import lifespans_in_games
 from primordia.organism.playing.seats import Frozen
 
 

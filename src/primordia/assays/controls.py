@@ -13,9 +13,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from primordia.errors import InputError
-from primordia.organism.evaluation import GAMES, TICKS, Evaluation, Senses, judged
-from primordia.organism.games import Players, lifespans
-from primordia.organism.players import evaluation_keys, founders_of, players_of
+from primordia.organism.playing.evaluation import GAMES, TICKS, Evaluation, Senses, judged
+from primordia.organism.playing.games import Players, lifespans
+from primordia.organism.playing.players import evaluation_keys, founders_of, players_of
 from primordia.runs.records import Records
 
 FOUNDERS = 500

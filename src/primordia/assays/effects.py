@@ -16,7 +16,7 @@ from primordia.assays.subjects import FOUNDERS, GAMES, TICKS, Subjects, founders
 from primordia.mutations.blocks import FounderBlock
 from primordia.mutations.calibrated import Calibrated
 from primordia.mutations.gaussian import Block, Gaussian
-from primordia.organism.games import lifespans_in_games
+from primordia.organism.playing.games import lifespans_in_games
 
 MUTANTS = 24
 """Default number of mutants that each mutation makes of an organism."""

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from primordia.assays.subjects import GAMES, TICKS, Subjects, of_run, spaced
-from primordia.organism.games import lifespans_in_games
-from primordia.organism.players import founders_of
+from primordia.organism.playing.games import lifespans_in_games
+from primordia.organism.playing.players import founders_of
 from primordia.runs.lives import LATE
 from primordia.runs.records import Records
 

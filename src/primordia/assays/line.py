@@ -10,7 +10,7 @@ from primordia.assays.subjects import GAMES, TICKS, of_run
 from primordia.history import pedigree
 from primordia.history.rebuilding import descent
 from primordia.law.world import BirthCause
-from primordia.organism.games import lifespans_in_games
+from primordia.organism.playing.games import lifespans_in_games
 from primordia.runs.records import Records
 
 MOST = 200

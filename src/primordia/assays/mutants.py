@@ -14,7 +14,7 @@ from primordia.law.law import Law
 from primordia.law.moments import change_in
 from primordia.law.world import Remembered
 from primordia.mutations.contract import PURPOSES, Draws, Family, Moments, Mutation
-from primordia.organism.games import Players, stretches
+from primordia.organism.playing.games import Players, stretches
 from primordia.organism.playing.seats import Manner
 from primordia.random.keys import streams
 from primordia.random.wide import wide

@@ -21,7 +21,7 @@ from primordia.errors import InputError
 from primordia.history import pedigree
 from primordia.history.climate import PastClimate
 from primordia.law.metabolism import Rates
-from primordia.organism.games import Players, lifespans
+from primordia.organism.playing.games import Players, lifespans
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
 from primordia.runs.records import Records, on_its_device

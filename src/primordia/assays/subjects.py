@@ -17,9 +17,9 @@ from primordia.law.genesis import initial_climate
 from primordia.law.law import Law
 from primordia.law.metabolism import Rates
 from primordia.mutations.contract import PURPOSES, Draws
-from primordia.organism.evaluation import changed
-from primordia.organism.games import Players, lifespans
-from primordia.organism.players import players_of
+from primordia.organism.playing.evaluation import changed
+from primordia.organism.playing.games import Players, lifespans
+from primordia.organism.playing.players import players_of
 from primordia.random.keys import Purpose, stream, streams
 from primordia.random.wide import wide
 from primordia.runs.records import Records

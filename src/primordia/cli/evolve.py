@@ -152,7 +152,7 @@ def _drive(path: Path, quiet: bool, speed: float | None, go: Callable[[Any], obj
     from primordia.api import Run
     from primordia.history.summary import summary
     from primordia.live.watching import watching
-    from primordia.organism.replay import lacking
+    from primordia.organism.reliving.replay import lacking
 
     def stopped(saved: str = "") -> str:
         begun = (path / "versions.json").exists()

@@ -10,7 +10,7 @@ from PIL import Image
 
 from primordia.film.moments import RATE
 from primordia.film.oldest import oldest_so_far, shown
-from primordia.organism import replay
+from primordia.organism.reliving import replay
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records

@@ -16,7 +16,8 @@ from primordia.film.frame import Frames, with_colours
 from primordia.film.moments import RATE, By, moments
 from primordia.film.shape import shape
 from primordia.history import series
-from primordia.organism import replay, video
+from primordia.organism import video
+from primordia.organism.reliving import replay
 from primordia.progress import tell
 from primordia.runs import bundle
 from primordia.runs.lives import Lives

@@ -5,7 +5,7 @@ from PIL import Image, ImageDraw
 
 from primordia.film.colours import DARKEST, PALETTE
 from primordia.film.shape import PAPER, SIDE
-from primordia.organism.replay import font
+from primordia.organism.reliving.replay import font
 
 WIDTH, HEIGHT, EDGE = 960, 576, 20
 """pixels of the whole picture, and of its margins"""

@@ -45,7 +45,7 @@ def genomes(run: Records, rows: np.ndarray, redrawn: bool = False) -> np.ndarray
     device.prepare()
     past, worlds = PastClimate(run), run.lives.world[rows]
     found = np.zeros((len(rows), run.layout.length), np.float32)
-    for world in steps(np.unique(worlds), "rebuilding genomes"):
+    for world in steps(np.unique(worlds).tolist(), "rebuilding genomes"):
         here = rows[worlds == world]
         found[worlds == world] = _Pedigree(run, past, here, redrawn).genomes(here)
     return found
@@ -74,7 +74,7 @@ class _Pedigree:
         """Return the genomes of some of the organisms, (K, P)."""
         wanted, generation = places_of(self._members, rows), self._generations()
         made = _Made(self._run.layout.length, wanted, self._parents, self._mates)
-        for place in np.flatnonzero(generation < 0):
+        for place in np.flatnonzero(generation < 0).tolist():
             made.put(np.array([place]), self._at_the_fork(place)[None])
         for number in steps(range(int(generation.max()) + 1), "rebuilding genomes"):
             now = np.flatnonzero(generation == number)

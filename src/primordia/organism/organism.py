@@ -9,10 +9,10 @@ import numpy as np
 
 from primordia.history.rebuilding import descent, rebuild
 from primordia.law.world import BirthCause, Cause
-from primordia.organism.evaluation import Evaluation, evaluate
+from primordia.organism.playing.evaluation import Evaluation, evaluate
 from primordia.organism.policy import Policy
 from primordia.organism.reliving.compare import Reliving, relive
-from primordia.organism.replay import replay
+from primordia.organism.reliving.replay import replay
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 

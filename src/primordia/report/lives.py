@@ -11,7 +11,7 @@ import numpy as np
 
 from primordia import device, interrupts
 from primordia.errors import InputError, Trouble
-from primordia.organism.replay import replay
+from primordia.organism.reliving.replay import replay
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 

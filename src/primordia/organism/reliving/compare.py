@@ -7,7 +7,8 @@ from typing import Any
 
 from primordia.errors import InputError, Trouble
 from primordia.law.world import Cause
-from primordia.organism import diary, replay, video
+from primordia.organism import video
+from primordia.organism.reliving import diary, replay
 from primordia.organism.reliving.course import Course, Value, recorded
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import checkpoint, directory

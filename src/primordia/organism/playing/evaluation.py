@@ -13,8 +13,8 @@ import numpy as np
 
 from primordia.config import Config
 from primordia.errors import InputError
-from primordia.organism.games import Games, Players, play
-from primordia.organism.players import players_of
+from primordia.organism.playing.games import Games, Players, play
+from primordia.organism.playing.players import players_of
 from primordia.organism.playing.seats import Frozen
 from primordia.runs.records import Records, on_its_device
 from primordia.settings.fields import setting_fields

@@ -9,7 +9,7 @@ from primordia.history.climate import PastClimate
 from primordia.history.founders import founders
 from primordia.history.rebuilding import rebuild_all
 from primordia.law.metabolism import Rates
-from primordia.organism.games import Players
+from primordia.organism.playing.games import Players
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import Wide, wide
 from primordia.runs.records import Records
