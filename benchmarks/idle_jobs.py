@@ -24,7 +24,7 @@ from primordia.config import Config
 from primordia.experiments import job as jobs
 from primordia.experiments.campaign import Campaign, begin, recorded
 from primordia.experiments.dispatch import live_all
-from primordia.experiments.ending import Ending
+from primordia.experiments.plan import Ending
 from primordia.experiments.ledger import Entry, Ledger, WorldCounts
 from primordia.experiments.plan import Job
 from primordia.runs import checkpoint, loop
