@@ -10,7 +10,6 @@ from primordia.live.census import Census
 from primordia.live.panel import (
     Outlook,
     duration,
-    fitting,
     heading,
     keys,
     numbers,
@@ -209,10 +208,3 @@ def test_a_prefix_stands_for_each_thousand(number: float, shown: str) -> None:
 )  # fmt: skip
 def test_a_duration_has_its_two_largest_units(seconds: float, shown: str) -> None:
     assert duration(seconds) == shown
-
-
-def test_the_first_text_that_fits_is_taken_or_the_beginning_of_the_last() -> None:
-    texts = ["abcdef", "abc", "ab"]
-    assert [fitting(texts, width) for width in (6, 5, 3, 2, 1, 0, -1)] == [
-        "abcdef", "abc", "abc", "ab", "a", "", "",
-    ]  # fmt: skip

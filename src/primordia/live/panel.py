@@ -1,6 +1,5 @@
 """The numbers of the live view, arranged for a terminal of any size."""
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -117,11 +116,6 @@ def saturation(census: Census, cells: int, calm_needed: int, width: int) -> Row:
     if worlds > 1 and not longest:
         text = f"no world full and calm for {needed} ticks"
     return _bar(longest / calm_needed, text, width)
-
-
-def fitting(texts: Sequence[str], width: int) -> str:
-    """Return the first of some texts that fits, or the beginning of the last."""
-    return next((text for text in texts if len(text) <= width), texts[-1][: max(width, 0)])
 
 
 def _bar(share: float, text: str, width: int) -> Row:
