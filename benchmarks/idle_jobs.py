@@ -24,9 +24,8 @@ from primordia.config import Config
 from primordia.experiments import job as jobs
 from primordia.experiments.campaign import Campaign, begin, recorded
 from primordia.experiments.dispatch import live_all
-from primordia.experiments.ending import Ending
 from primordia.experiments.ledger import Entry, Ledger, WorldCounts
-from primordia.experiments.plan import Job
+from primordia.experiments.plan import Ending, Job
 from primordia.runs import checkpoint, loop
 from primordia.runs import manifest as manifests
 from primordia.runs.manifest import Seal

@@ -100,7 +100,7 @@ def test_the_note_about_what_is_shown_takes_a_row_of_the_world() -> None:
     assert rows[1:20] == [
         *["W" * 80] * 17, "shown: the first 8 of 10 cells", "colour: line of descent",
     ]  # fmt: skip
-    assert Parts(beside=False, part="shown: a").screen(20, 24)[19] == "colour: line"
+    assert Parts(beside=False, part="shown: a").screen(20, 24)[19] == "colour: line of desc"
 
 
 def test_an_organism_is_below_the_numbers_that_are_beside_the_world() -> None:

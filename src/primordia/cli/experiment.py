@@ -69,26 +69,16 @@ def experiment(
     if job is not None and several:
         raise InputError(f"--job runs one job in this process; leave out {' and '.join(several)}")
     if status:
-        return _show(planned(file, out), as_json)
+        told = planned(file, out).status()
+        return click.echo(json.dumps(told.to_dict())) if as_json else show_status(told)
     chosen = begin(file, out)
     if trust:
-        _trust(chosen.path)
+        from primordia.api import load  # imports everything that reads runs
+
+        load(chosen.path, trust=True)
     if job is not None:
         return _live_one(chosen, job, options["checkpoint_every"], options["device"])
     return _live_all(chosen, **options)
-
-
-def _trust(path: Path) -> None:
-    from primordia.api import load  # imports everything that reads runs
-
-    load(path, trust=True)
-
-
-def _show(chosen: "Campaign", as_json: bool) -> None:
-    if as_json:
-        click.echo(json.dumps(chosen.status().to_dict()))
-    else:
-        show_status(chosen.status())
 
 
 def show_status(status: "CampaignStatus") -> None:

@@ -15,7 +15,7 @@ from primordia.habitats.framed import MARGIN, PAPER
 from primordia.law.metabolism import ONE
 from primordia.live.forms import Room
 from primordia.live.paint import FAINT, Row, levels, photograph
-from primordia.live.panel import STRONG, fitting
+from primordia.live.panel import STRONG
 from primordia.organism.mind import Mind, think
 from primordia.random.wide import to_host, wide
 
@@ -70,12 +70,11 @@ class Companion:
         """Draw the organism as it is now."""
         cell = self.find(engine, alone)
         if cell is None:
-            return [[Segment(fitting(["nothing is alive"], room.width), FAINT)]]
+            return [[Segment("nothing is alive"[: room.width], FAINT)]]
         law, (organisms, worlds) = engine.law, engine.state.world
         world, number = self._who or (0, 0)
         where = f" of world {world}" if law.worlds > 1 else ""
         title = f"organism {number:,} in cell {cell % law.cells:,}{where}"
-        titles = [title, f"{number:,} in cell {cell % law.cells:,}{where}", f"organism {number:,}"]
         age = int(to_host(worlds.tick)[world]) - int(to_host(organisms.born)[cell])
         senses, memory, body = _perceived(engine, cell, world)
         facts = {"age": f"{age:,} ticks"}
@@ -89,7 +88,7 @@ class Companion:
         below = below[: max(room.height - 1, 0)]
         left = room.height - 1 - len(below)
         picture = self._picture(engine, body, Room(room.width, left))
-        return [[Segment(fitting(titles, room.width), STRONG)], *picture, *below]
+        return [[Segment(title[: room.width], STRONG)], *picture, *below]
 
     def _caption(self, engine: Engine, body: Body) -> str:
         try:

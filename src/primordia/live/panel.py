@@ -1,6 +1,5 @@
 """The numbers of the live view, arranged for a terminal of any size."""
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -108,31 +107,18 @@ def saturation(census: Census, cells: int, calm_needed: int, width: int) -> Row:
     """Return a bar: how close one world is to saturation, or how many of several worlds are saturated."""
     worlds, done = len(census.tick), int((census.saturated >= 0).sum())
     if done and worlds == 1:
-        tick = f"{census.saturated[0]:,}"
-        return _bar(1.0, [f"saturated since tick {tick}", f"saturated at {tick}"], width)
+        return _bar(1.0, f"saturated since tick {census.saturated[0]:,}", width)
     if done:
-        texts = [f"{done:,} of {worlds:,} worlds saturated", f"{done:,} saturated"]
-        return _bar(done / worlds, texts, width)
+        return _bar(done / worlds, f"{done:,} of {worlds:,} worlds saturated", width)
     calm = np.where(census.alive == cells, census.calm, 0)
     longest, needed = min(int(calm.max()), calm_needed), f"{calm_needed:,}"
-    subject = "" if worlds == 1 else "one world "
-    texts = [
-        f"{subject}full and calm for {longest:,} of {needed} ticks",
-        f"{subject}calm {longest:,} of {needed}",
-        f"calm {longest / calm_needed:.0%}",
-    ]
+    text = f"{'' if worlds == 1 else 'one world '}full and calm for {longest:,} of {needed} ticks"
     if worlds > 1 and not longest:
-        texts = [f"no world full and calm for {needed} ticks", "no world full and calm"]
-    return _bar(longest / calm_needed, texts, width)
+        text = f"no world full and calm for {needed} ticks"
+    return _bar(longest / calm_needed, text, width)
 
 
-def fitting(texts: Sequence[str], width: int) -> str:
-    """Return the first of some texts that fits, or the beginning of the last."""
-    return next((text for text in texts if len(text) <= width), texts[-1][: max(width, 0)])
-
-
-def _bar(share: float, texts: Sequence[str], width: int) -> Row:
-    text = fitting(texts, width)
+def _bar(share: float, text: str, width: int) -> Row:
     length = min(width - len(text) - 2, LONGEST)
     length = length if length >= SHORTEST else 0
     filled = int(share * length)

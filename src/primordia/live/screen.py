@@ -7,7 +7,7 @@ from rich.segment import Segment
 
 from primordia.live.forms import Room
 from primordia.live.paint import FAINT, Row, padded, width_of
-from primordia.live.panel import CELL, fitting
+from primordia.live.panel import CELL
 from primordia.live.scene import Scene
 
 GAP = 2
@@ -74,10 +74,10 @@ def _scene(draw: Callable[[Room], Scene], room: Room) -> list[Row]:
     drawn = draw(worlds)
     if drawn.part:
         drawn = draw(worlds._replace(height=max(worlds.height - 1, 1)))
-    legend = [[drawn.part]] if drawn.part else []
+    legend = [drawn.part] if drawn.part else []
     if room.height >= LOW:
-        legend.append([drawn.legend, drawn.legend.replace(" of descent", "")])
-    return [*drawn.rows, *([Segment(fitting(each, room.width), FAINT)] for each in legend)]
+        legend.append(drawn.legend)
+    return [*drawn.rows, *([Segment(each[: room.width], FAINT)] for each in legend)]
 
 
 def joined(left: list[Row], right: list[Row]) -> list[Row]:
