@@ -23,8 +23,7 @@ PLAIN = (bool, int, float, str, type(None))
 CONTAINERS: dict[str, type] = {
     "list": list, "tuple": tuple, "set": set, "deque": deque, "dict": dict, "ordered": OrderedDict,
 }  # fmt: skip
-OLD_GENERATOR = "numpy.RandomState"
-GENERATORS = ("numpy.Generator", OLD_GENERATOR)
+GENERATOR = "numpy.Generator"
 KINDS = {own: kind for kind, own in CONTAINERS.items()}
 KEPT = (
     Enum, Space, EnvSpec, type, ModuleType, FunctionType, BuiltinFunctionType, MethodType, range, slice,
@@ -76,10 +75,8 @@ class _Writer:
             return ["number", value.dtype.str, _text(value.tobytes())]
         if isinstance(value, np.ndarray) and not value.dtype.hasobject:
             return ["array", value.dtype.str, list(value.shape), _text(value.tobytes())]
-        if _kind(value) in GENERATORS:
-            old = _kind(value) == OLD_GENERATOR
-            bits = value.get_state(legacy=False) if old else value.bit_generator.state
-            return ["generator", self.write(bits, place)]
+        if _kind(value) == GENERATOR:
+            return ["generator", self.write(value.bit_generator.state, place)]
         if (kind := KINDS.get(type(value))) is not None:
             items: Any = value.items() if isinstance(value, dict) else value
             inner = [self.write(each, f"{place}[{n}]") for n, each in enumerate(items)]
@@ -136,13 +133,9 @@ class _Reader:
         return flat.reshape(stored[2]).copy()
 
     def _read_generator(self, number: int, stored: list, now: Any, place: str) -> Any:
-        if _kind(now) not in GENERATORS:
+        if _kind(now) != GENERATOR:
             raise UnknownStateError(f"{place} is not a random generator here")
-        bits = self.read(stored[1], None, place)
-        if _kind(now) == OLD_GENERATOR:
-            now.set_state(bits)
-        else:
-            now.bit_generator.state = bits
+        now.bit_generator.state = self.read(stored[1], None, place)
         return now
 
     def _read_container(self, number: int, stored: list, now: Any, place: str) -> Any:
