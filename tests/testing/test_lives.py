@@ -10,7 +10,7 @@ from primordia.habitats import Compound, Continuous, Discrete, HostHabitat, Outc
 from primordia.random.trials import words
 from primordia.testing import ContractError
 from primordia.testing.lives import HALF, TICKS, Lives, Past, actions
-from primordia.testing.trial import ALL
+from primordia.testing.report import ALL
 
 LATER, SOONER = 9, 4
 """The ages at which bodies with an even word die. Bodies with a multiple of 4 die sooner."""

@@ -13,7 +13,7 @@ from primordia.settings.base import Settings
 from primordia.testing import ContractError
 from primordia.testing import habitat as checks
 from primordia.testing.lives import TICKS, Lives, Past
-from primordia.testing.trial import ALL
+from primordia.testing.report import ALL
 
 
 class Reporting(JaxHabitat, Settings):

@@ -10,8 +10,7 @@ from hypothesis import strategies as st
 
 from primordia.brains.linear import Linear
 from primordia.errors import InputError
-from primordia.testing.report import ContractError, advise, kept, need, same, typed
-from primordia.testing.trial import last
+from primordia.testing.report import ContractError, advise, kept, last, need, same, typed
 
 ALIKE = [0, 0x80000000, 0x7FC00000, 0x7FC00001, 0xFFC00000]
 """Words of 0, -0, and three NaNs: different bits that are equal as numbers."""

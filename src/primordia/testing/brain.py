@@ -8,8 +8,7 @@ from primordia.brains import checks
 from primordia.brains.contract import Brain, Genome
 from primordia.compiled import jit
 from primordia.random.trials import normal
-from primordia.testing.report import SUMMED, advise, kept, need, same
-from primordia.testing.trial import ALL, COUNTS, last
+from primordia.testing.report import ALL, COUNTS, SUMMED, advise, kept, last, need, same
 
 TICKS = 6
 

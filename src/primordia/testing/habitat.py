@@ -15,8 +15,7 @@ from primordia.habitats.contract import (
 )
 from primordia.law.events import DEATHS
 from primordia.testing.lives import TICKS, Lives, Past
-from primordia.testing.report import SUMMED, advise, kept, need
-from primordia.testing.trial import ALL, COUNTS
+from primordia.testing.report import ALL, COUNTS, SUMMED, advise, kept, need
 
 
 def check_habitat(habitat: AnyHabitat) -> None:

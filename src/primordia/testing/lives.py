@@ -22,20 +22,13 @@ from primordia.habitats.contract import (
 from primordia.habitats.on_host import OnHost
 from primordia.random.trials import normal, words
 from primordia.settings.tracing import Tracing
-from primordia.testing.report import ContractError, kept, need, typed
-from primordia.testing.trial import ALL
+from primordia.testing.report import ALL, ContractError, kept, need, typed
 
 TICKS = 12
 HALF = TICKS // 2
 
 Past: TypeAlias = list[tuple[Any, ...]]
 """For each age from birth on: senses, outcome and tally; None for a value that is not reported."""
-
-
-def judged(habitat: object, outcome: Any, count: int) -> None:
-    """Raise ContractError if a step does not report an Outcome of `count` bodies."""
-    with kept():
-        check_outcome(Tracing("habitat", habitat), outcome, count)
 
 
 def actions(kind: Action) -> np.ndarray:
@@ -174,7 +167,8 @@ class Stage:
         action[active] = self.lives.actions[self.age[active], self.who[active]]
         senses, outcome = self.habitat.step(action.copy(), active.copy())
         typed(part, "senses from step", senses, (self.cells, part.senses_size), np.float32)
-        judged(part, outcome, self.cells)
+        with kept():
+            check_outcome(Tracing("habitat", part), outcome, self.cells)
         told = [None if each is None else np.array(each) for each in (senses, *outcome)]
         told += [self._tally()] if part.can(Ability.TALLY) else []
         for cell in np.flatnonzero(active):

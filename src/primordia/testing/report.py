@@ -17,6 +17,10 @@ SUMMED = (
 )
 
 
+ALL, COUNTS = 32, (1, 2, 31)
+"""Number of organisms of a whole batch, and of smaller batches that must give the same results."""
+
+
 class ContractError(AssertionError):
     """A part does not keep its contract."""
 
@@ -40,6 +44,11 @@ def typed(part: object, what: str, array: Any, shape: tuple[int, ...], dtype: An
     """Raise ContractError if an array has another shape or dtype than these."""
     with kept():
         Tracing("part", part).typed(what, array, shape, dtype)
+
+
+def last(tree: Any, count: int) -> Any:
+    """Return the last rows of a tree of arrays (N, ...)."""
+    return jax.tree.map(lambda leaf: np.asarray(leaf)[len(leaf) - count :], tree)
 
 
 def same(part: object, one: Any, other: Any, says: str, first: int = 0) -> None:
