@@ -14,7 +14,6 @@ import primordia
 from primordia.habitats.atari import simulator
 from primordia.habitats.atari.games import facts
 from primordia.habitats.atari.habitat import SCALED, Atari
-from primordia.habitats.atari.picture import draw
 from primordia.habitats.framed import MARGIN
 from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
@@ -187,7 +186,7 @@ def test_a_video_shows_a_life(pong: Path, tmp_path: Path) -> None:
 def test_a_picture_has_pixels_twice_as_wide_as_high_below_its_caption() -> None:
     screen = np.zeros((210, 160, 3), np.uint8)
     screen[100, 30] = (10, 200, 30)
-    picture = np.asarray(draw(screen))
+    picture = np.asarray(Atari(game="pong").picture({"screen": screen}, np.int32(0)))
     assert picture.shape == (420 + MARGIN, 640, 3)
     rows, columns = np.nonzero((picture == (10, 200, 30)).all(axis=2))
     assert (rows.min(), rows.max()) == (MARGIN + 200, MARGIN + 201)

@@ -35,6 +35,8 @@ NAMES: Names = {
 """Names in conditions and amounts: RAM and lives after the tick; points and lost lives of the tick."""
 SCALED = (np.arange(256, dtype=np.float32) - 128) / 128
 """The number perceived for each value of a byte."""
+PIXEL = (4, 2)
+"""width and height of a pixel of the console in a picture: pixels are wide, as on a television"""
 FRAME_RATE = 60
 """frames a second"""
 
@@ -220,9 +222,13 @@ class Atari(HostHabitat, Settings):
 
     def picture(self, body: dict[str, np.ndarray], action: np.ndarray) -> "Image":
         """Return the screen, with a margin for captions above."""
-        from primordia.habitats.atari.picture import draw
+        from PIL import Image
 
-        return draw(body[SCREEN])
+        from primordia.habitats.framed import framed
+
+        height, width = body[SCREEN].shape[:2]
+        size = width * PIXEL[0], height * PIXEL[1]
+        return framed(Image.fromarray(body[SCREEN]).resize(size, Image.Resampling.NEAREST))
 
     def caption(self, body: dict[str, np.ndarray], action: np.ndarray) -> str:
         """Return the score so far, and the button."""
