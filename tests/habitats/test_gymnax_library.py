@@ -10,7 +10,7 @@ from primordia.config import load, validated
 from primordia.errors import InputError
 from primordia.habitats.framed import MARGIN
 from primordia.habitats.gymnax.habitat import Gymnax
-from primordia.habitats.gymnax.task import report, values
+from primordia.habitats.gymnax.task import task
 from primordia.testing import check_habitat
 
 gymnax = pytest.importorskip("gymnax", reason="pip install --no-deps --group no-deps")
@@ -58,13 +58,13 @@ def test_craftax_keeps_the_contract(name: str) -> None:
 
 
 def test_a_task_is_made_from_lives_at_random() -> None:
-    task = values("CartPole-v1")
-    assert 1 / 40 < task["replication"] < 1 / 15
-    assert validated(task, source="test").build_habitat().env in task["about"]
+    made = task("CartPole-v1").table
+    assert 1 / 40 < made["replication"] < 1 / 15
+    assert validated(made, source="test").build_habitat().env in made["about"]
 
 
 def test_what_is_known_of_an_environment_is_said() -> None:
-    facts, faults = report("CartPole-v1")
+    _, facts, faults = task("CartPole-v1")
     assert faults == []
     for line in (
         "Observation: 4 numbers, obs[0] to obs[3] in conditions.",
@@ -78,10 +78,10 @@ def test_what_is_known_of_an_environment_is_said() -> None:
 
 def test_a_name_that_is_not_known_suggests_one() -> None:
     with pytest.raises(InputError, match="did you mean 'Breakout-MinAtar'"):
-        values("Breakout-minatar")
+        task("Breakout-minatar")
     pytest.importorskip("craftax")
     with pytest.raises(InputError, match="did you mean 'Craftax-Symbolic-v1'"):
-        values("Craftax-Symbolik-v1")
+        task("Craftax-Symbolik-v1")
 
 
 def test_players_act_and_perceive_the_grid() -> None:
