@@ -1,11 +1,12 @@
 """Samples: rows of a world's counts, taken at fixed ticks and when a season changes its climate."""
 
 import jax.numpy as jnp
-from jax import Array, lax
+import numpy as np
+from jax import Array
 
-from primordia.law.events import TOTALS, Rows
+from primordia.law.events import Rows, sample_columns
 from primordia.law.law import Law
-from primordia.law.world import World, ages, ages_total
+from primordia.law.world import Cause, World, ages, ages_total
 from primordia.random.wide import largest, signed, total
 
 
@@ -19,32 +20,23 @@ def note_samples(law: Law, world: World, due: Array, samples: Rows) -> Rows:
 
 
 def _rows(law: Law, world: World) -> Array:
-    """Return the rows of `sample_columns`, uint32 (W, words).
-
-    Totals are put together as two arrays, since XLA makes a kernel of each column that is put into a
-    row by itself: 24 of 220 in a small world.
-    """
+    """Return the rows of `sample_columns`, uint32 (W, words)."""
     organisms, worlds = world
     energy = signed(jnp.where(organisms.alive, organisms.energy, 0))
-    totals = (
-        worlds.tick,
-        worlds.births,
-        worlds.deaths,
-        worlds.extinctions,
-        worlds.organism_ticks,
-        ages_total(world),
-        largest(ages(world).map(law.by_world), axis=1),
-        total(energy.map(law.by_world), axis=1),
-        worlds.food,
-    )
-    high, low = map(jnp.column_stack, zip(*totals, strict=True))
-    population = law.by_world(organisms.alive).sum(axis=1, dtype=jnp.uint32)
-    rates = jnp.stack([worlds.climate[name] for name in law.rates], axis=1)
-    return jnp.column_stack(
-        (
-            jnp.arange(law.worlds, dtype=jnp.uint32),
-            population,
-            jnp.stack((high, low), axis=2).reshape(law.worlds, 2 * len(TOTALS)),
-            lax.bitcast_convert_type(rates, jnp.uint32),
-        )
+    deaths = {
+        f"deaths_{cause.name.lower()}": worlds.deaths.take(np.s_[:, cause]) for cause in Cause
+    }
+    return sample_columns(law.rates).words(
+        world=jnp.arange(law.worlds, dtype=jnp.uint32),
+        population=law.by_world(organisms.alive).sum(axis=1, dtype=jnp.uint32),
+        tick=worlds.tick,
+        births=worlds.births,
+        **deaths,
+        extinctions=worlds.extinctions,
+        organism_ticks=worlds.organism_ticks,
+        age_total=ages_total(world),
+        oldest_age=largest(ages(world).map(law.by_world), axis=1),
+        energy_total=total(energy.map(law.by_world), axis=1),
+        food_total=worlds.food,
+        **{name: worlds.climate[name] for name in law.rates},
     )
