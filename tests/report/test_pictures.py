@@ -11,11 +11,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from primordia.figures import spacetime
+from primordia.history.ancestry import generations
 from primordia.phylogeny.clades import clades_of
 from primordia.report import film, ground
 from primordia.report import tree as phylogeny
 from primordia.report.ground import Ground
-from primordia.report.organisms import generations, nearest_among, organisms
+from primordia.report.organisms import nearest_among, organisms
 from primordia.report.packed import packed
 from primordia.report.tree import Nodes, grown, tree
 from primordia.runs.archive import Archive

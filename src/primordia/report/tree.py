@@ -11,9 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from primordia.figures.spacetime import line_codes
-from primordia.history.ancestry import children, nearest, places_of, with_ancestors
+from primordia.history.ancestry import children, generations, nearest, places_of, with_ancestors
 from primordia.report.ground import Ground
-from primordia.report.organisms import generations
 
 LEAVES = 300
 """Largest number of the living that are shown. If more live, an evenly spaced sample is shown."""
