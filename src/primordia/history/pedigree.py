@@ -73,7 +73,7 @@ class _Pedigree:
         """Return the genomes of some of the organisms, (K, P)."""
         wanted, generation = places_of(self._members, rows), self._generations()
         made = _Made(self._run.layout.length, wanted, self._parents, self._mates)
-        for place in np.flatnonzero(generation < 0):
+        for place in np.flatnonzero(generation < 0).tolist():
             made.put(np.array([place]), self._at_the_fork(place)[None])
         for number in range(int(generation.max()) + 1):
             now = np.flatnonzero(generation == number)
