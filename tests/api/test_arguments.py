@@ -123,8 +123,8 @@ PLACES: list[tuple[str, tuple[Any, ...], dict[str, Any], str, Any]] = [
     ("film", (), {}, "film.film.film", call(ANY, None, 0)),
     ("report", ("OUT",), {}, "report.report.report", call(ANY, OUT)),
     ("report", (), {}, "report.report.report", call(ANY, None)),
-    ("watch", (0, print), {}, "report.watch.watch", call(ANY, 0, print)),
-    ("watch", (), {}, "report.watch.watch", call(ANY, 8321, print)),
+    ("watch", (0, print), {}, "report.server.watch", call(ANY, 0, print)),
+    ("watch", (), {}, "report.server.watch", call(ANY, 8321, print)),
 ]
 
 

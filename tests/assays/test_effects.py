@@ -216,12 +216,12 @@ def test_mutations_are_scaled_by_the_founders_deviation_of_each_block(subjects: 
     """A scale is a share of this deviation, and all children mutate."""
     deviations, layout = founder_deviations(subjects), subjects.law.heredity.layout
     assert list(deviations) == list(layout.names)
-    (noise,) = module._gaussian(subjects, (0.25,))
+    (noise,) = module._others(subjects, (0.25,), ())
     assert isinstance(noise.mutation, Gaussian)
     assert (noise.name, noise.mutation.probability) == ("scale 0.25", 1)
     scales = noise.mutation.per_block("scale", layout)
     assert list(scales) == pytest.approx([each / 4 for each in deviations.values()])
-    _, measured = module._calibrated(subjects, (0.1, 0.05))
+    _, measured = module._others(subjects, (), (0.1, 0.05))
     assert isinstance(measured.mutation, Calibrated)
     mutation = measured.mutation
     assert (measured.name, mutation.probability, mutation.differs) == ("differs 0.05", 1, 0.05)

@@ -5,9 +5,8 @@ from typing import Any
 import numpy as np
 
 from primordia.comparison.comparison import ComparedArm, Comparison
-from primordia.comparison.gathering import Gathering
 from primordia.comparison.measured import Measured
-from primordia.comparison.pace import WINDOWS, Pace
+from primordia.comparison.pace import WINDOWS, Gathering, Pace
 from primordia.comparison.survival import survival
 from primordia.history.extinctions import Extinctions
 from tests.synthetic import worlds_of

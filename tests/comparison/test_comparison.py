@@ -9,9 +9,9 @@ import pytest
 
 from primordia.comparison import comparison as module
 from primordia.comparison.comparison import compare, differing
-from primordia.comparison.gathering import Gathering
 from primordia.comparison.measured import Measured
 from primordia.comparison.moments import saturation
+from primordia.comparison.pace import Gathering
 from primordia.errors import InputError
 from primordia.runs.arrays import NEVER
 from primordia.runs.lives import Lives, joined

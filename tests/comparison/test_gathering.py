@@ -7,7 +7,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 
-from primordia.comparison.gathering import gathering
+from primordia.comparison.pace import gathering
 from primordia.law.metabolism import ONE
 
 

@@ -7,9 +7,8 @@ from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 
 from primordia.comparison.comparison import ComparedArm, Comparison
-from primordia.comparison.gathering import Gathering
 from primordia.comparison.measured import Measured
-from primordia.comparison.pace import WINDOWS, Pace
+from primordia.comparison.pace import WINDOWS, Gathering, Pace
 from primordia.comparison.survival import survival as survived
 from primordia.figures import comparison, style
 from primordia.history.extinctions import Extinctions

@@ -9,7 +9,7 @@ from primordia.figures import spacetime
 from primordia.film import colours as colouring
 from primordia.film import shape as shapes
 from primordia.film.colours import FADING, FLASH, GROUND, PALETTE, colours
-from primordia.film.frame import HEIGHT, STRIPS, WIDTH, Frames, fitted, with_colours
+from primordia.film.frame import HEIGHT, STRIPS, WIDTH, Frames, with_colours
 from primordia.film.moments import RATE, SECONDS, moments
 from primordia.film.shape import PAPER, SIDE, Ring, shape
 from primordia.law.placement import Placement
@@ -205,8 +205,6 @@ def test_a_picture_has_the_world_the_life_and_the_share_that_has_passed() -> Non
     below = (picture[-10:, : WIDTH // 4] != PAPER).any(axis=2)
     assert below.all(axis=1).tolist() == [False] * 7 + [True] * 3
     assert not below[:7].any()
-    assert fitted(life, (90, 100)).size == (90, 30)
-    assert fitted(life, (900, 20)).size == (60, 20)
 
 
 def test_a_picture_has_nothing_of_the_one_before_it() -> None:

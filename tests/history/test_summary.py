@@ -5,8 +5,7 @@ from typing import Any
 
 import pytest
 
-from primordia.history.seeds import seeds_text
-from primordia.history.summary import summary
+from primordia.history.summary import seeds_text, summary
 
 UNKNOWN = {"mutated": 0.5, "as_good": None, "advantage": 2.0, "held": None}
 

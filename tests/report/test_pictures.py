@@ -11,13 +11,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from primordia.figures import spacetime
+from primordia.history.ancestry import generations
 from primordia.phylogeny.clades import clades_of
 from primordia.report import film, ground
 from primordia.report import tree as phylogeny
 from primordia.report.ground import Ground
-from primordia.report.organisms import generations, nearest_among, organisms
+from primordia.report.organisms import nearest_among, organisms
 from primordia.report.packed import packed
-from primordia.report.tree import Node, grown, in_order, tree
+from primordia.report.tree import Nodes, grown, tree
 from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
 from tests.pedigrees import lives_of
@@ -113,41 +114,40 @@ def test_ancestors_and_generations_are_those_of_a_walk(parents: np.ndarray, data
 @given(PARENTS, st.data())
 def test_the_phylogeny_joins_lines_where_they_part(parents: np.ndarray, data: Any) -> None:
     leaves = sorted(data.draw(st.sets(st.integers(0, len(parents) - 1), min_size=1)))
-    roots = grown(parents, leaves)
-    assert [root.row for root in roots] == sorted(root.row for root in roots), "in order of birth"
-    nodes = in_order(roots)
-    of_row = {node.row: node for node in nodes}
+    nodes = grown(parents, np.array(leaves))
+    place_of = {row: place for place, row in enumerate(nodes.row.tolist())}
+    roots = nodes.row[nodes.parent < 0].tolist()
+    assert roots == sorted(roots), "in order of birth"
 
     def line(row: int) -> list[int]:
         return [row] if parents[row] < 0 else [row, *line(int(parents[row]))]
 
-    def drawn(node: Node | None) -> list[int]:
-        return [] if node is None else [node.row, *drawn(node.parent)]
+    def drawn(place: int) -> list[int]:
+        return [] if place < 0 else [int(nodes.row[place]), *drawn(nodes.parent[place])]
 
     for leaf in leaves:
-        walked = [row for row in line(leaf) if row in of_row]
-        assert drawn(of_row[leaf]) == walked
-        assert sum(of_row[row].skipped + 1 for row in walked) == len(line(leaf))
+        walked = [row for row in line(leaf) if row in place_of]
+        assert drawn(place_of[leaf]) == walked
+        assert sum(nodes.skipped[place_of[row]] + 1 for row in walked) == len(line(leaf))
     lines = [line(leaf) for leaf in leaves]
-    for row, node in of_row.items():
+    for row, place in place_of.items():
         ways = {each[each.index(row) - 1] for each in lines if row in each and each[0] != row}
-        assert node.alive or len(ways) > 1 or parents[row] < 0, "each node is needed"
-        assert [child.left_by for child in node.children] == sorted(ways, reverse=True)
-    levels = [node.level for node in nodes if node.alive]
-    assert sorted(levels) == list(range(len(leaves)))
+        assert nodes.alive[place] == (row in leaves)
+        assert nodes.alive[place] or len(ways) > 1 or parents[row] < 0, "each node is needed"
+        assert nodes.left_by[nodes.parent == place].tolist() == sorted(ways, reverse=True)
+    assert sorted(nodes.level[nodes.alive]) == list(range(len(leaves)))
     assert not_crossing(nodes)
 
 
-def not_crossing(nodes: list[Node]) -> bool:
+def not_crossing(nodes: Nodes) -> bool:
     """Return whether no line that leaves a parent crosses the bar of another node."""
-    for node in nodes:
-        if node.parent is None:
-            continue
-        low, high = sorted((node.level, node.parent.level))
-        for other in nodes:
-            end = np.inf if other.alive else other.children[0].left_by
-            if low < other.level < high and other.left_by < node.left_by < end:
-                return False
+    level, left_by = nodes.level, nodes.left_by
+    ends = np.where(nodes.alive, np.inf, np.append(left_by[1:], 0))
+    for place, parent in enumerate(nodes.parent):
+        low, high = sorted((level[place], level[parent]))
+        between = (low < level) & (level < high) & (left_by < left_by[place])
+        if parent >= 0 and (between & (left_by[place] < ends)).any():
+            return False
     return True
 
 

@@ -12,7 +12,7 @@ from unittest.mock import MagicMock
 import pytest
 
 from primordia.errors import InputError, Trouble
-from primordia.report import watch as watching
+from primordia.report import server as watching
 from primordia.report import watched
 from primordia.report.watched import Watched
 from primordia.runs import directory

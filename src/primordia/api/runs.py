@@ -217,8 +217,10 @@ class Run:
 
     def watch(self, port: int | None = None, begun: Callable[[str], object] = print) -> None:
         """Serve a live page about the run on this machine until Ctrl-C is pressed; see `watch.watch`."""
-        from primordia.report.server import PORT  # Matplotlib takes a second to load
-        from primordia.report.watch import watch
+        from primordia.report.server import (
+            PORT,  # Matplotlib takes a second to load
+            watch,
+        )
 
         watch(self.opened, PORT if port is None else port, begun)
 

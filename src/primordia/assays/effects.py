@@ -15,6 +15,7 @@ from primordia.assays.mutants import Operator, moments_of, mutants, own_operator
 from primordia.assays.subjects import FOUNDERS, GAMES, TICKS, Subjects, founders
 from primordia.mutations.blocks import FounderBlock
 from primordia.mutations.calibrated import Calibrated
+from primordia.mutations.contract import Mutation
 from primordia.mutations.gaussian import Block, Gaussian
 from primordia.organism.playing.games import lifespans_in_games
 
@@ -96,8 +97,7 @@ def effects(
     Raises:
         InputError: the run's own mutation makes no mutants.
     """
-    operators = [own_operator(subjects), *_gaussian(subjects, scales)]
-    operators += _calibrated(subjects, differs)
+    operators = [own_operator(subjects), *_others(subjects, scales, differs)]
     number = subjects.games(games)
     lived = lifespans_in_games(subjects.players, number, ticks).mean(axis=1)
     return [
@@ -123,32 +123,21 @@ def _of_operator(
         yield Effect(operator.name, organism, world, own, theirs)
 
 
-def _gaussian(subjects: Subjects, scales: Sequence[float]) -> list[Operator]:
-    deviations = founder_deviations(subjects)
-    return [
-        Operator.of(
-            f"scale {scale:g}",
-            Gaussian(
-                probability=1.0,
-                blocks={name: Block(scale=scale * own) for name, own in deviations.items()},
-            ),
-            subjects,
+def _others(
+    subjects: Subjects, scales: Sequence[float], differs: Sequence[float]
+) -> list[Operator]:
+    """Return Gaussian mutations and calibrated ones, in units of the deviations of founders."""
+    deviations = founder_deviations(subjects).items()
+    made: dict[str, Mutation] = {}
+    for scale in scales:
+        blocks = {name: Block(scale=scale * own) for name, own in deviations}
+        made[f"scale {scale:g}"] = Gaussian(probability=1.0, blocks=blocks)
+    founder_blocks = {name: FounderBlock(founder_scale=own) for name, own in deviations}
+    for value in differs:
+        made[f"differs {value:g}"] = Calibrated(
+            probability=1.0, differs=value, blocks=founder_blocks
         )
-        for scale in scales
-    ]
-
-
-def _calibrated(subjects: Subjects, differs: Sequence[float]) -> list[Operator]:
-    deviations = founder_deviations(subjects)
-    blocks = {name: FounderBlock(founder_scale=own) for name, own in deviations.items()}
-    return [
-        Operator.of(
-            f"differs {value:g}",
-            Calibrated(probability=1.0, differs=value, blocks=blocks),
-            subjects,
-        )
-        for value in differs
-    ]
+    return [Operator.of(name, mutation, subjects) for name, mutation in made.items()]
 
 
 def founder_deviations(subjects: Subjects) -> dict[str, float]:

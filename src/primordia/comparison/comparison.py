@@ -16,10 +16,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from primordia.comparison.contrast import Contrast, contrast, plain
-from primordia.comparison.gathering import Gathering, gathering
 from primordia.comparison.measured import Measured
 from primordia.comparison.moments import first_long, often_saturated, saturation
-from primordia.comparison.pace import Pace, pace
+from primordia.comparison.pace import Gathering, Pace, gathering, pace
 from primordia.comparison.pairs import same_seeds
 from primordia.comparison.survival import Survival, survival
 from primordia.config import Config

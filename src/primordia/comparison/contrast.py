@@ -12,7 +12,7 @@ from primordia.comparison import needed
 from primordia.comparison.measured import Bounds, Measured
 from primordia.comparison.pairs import Paired, Rows, paired
 from primordia.comparison.resample import LEAST, MISSED, enough, interval, least, resamples
-from primordia.history.quantiles import quantile
+from primordia.history.series import quantile
 
 WORDS = ((0.147, "negligible"), (0.33, "small"), (0.474, "medium"))
 """The word for an absolute delta below each number; from the last number on it is "large" (Romano et al.

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from primordia.errors import InputError
-from primordia.history.quantiles import quantile
+from primordia.history.series import quantile
 
 Bounds = tuple[float, float]
 """Lower and upper bound of a value; infinity if no upper bound is known."""

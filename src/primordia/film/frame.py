@@ -1,7 +1,7 @@
 """One picture of a film: the world on the left, a life on the right, and words below them."""
 
 import numpy as np
-from PIL import Image, ImageDraw
+from PIL import Image, ImageDraw, ImageOps
 
 from primordia.film.colours import DARKEST, PALETTE
 from primordia.film.shape import PAPER, SIDE
@@ -47,7 +47,7 @@ class Frames:
         pen, below = ImageDraw.Draw(picture), top + SIDE + 14
         pen.text((EDGE, below), counts, SOFT, font(SMALL))
         if life is not None:
-            fitting = fitted(life, (LIFE, SIDE))
+            fitting = ImageOps.contain(life, (LIFE, SIDE), Image.Resampling.BILINEAR)
             right = 2 * EDGE + SIDE
             picture.paste(fitting, (right, top + (SIDE - fitting.height) // 2))
             pen.text((WIDTH - EDGE, below), about, SOFT, font(SMALL), anchor="ra")
@@ -57,7 +57,7 @@ class Frames:
 
 def with_colours(picture: Image.Image) -> Image.Image:
     """Return a small copy of a picture, with a strip of the colours that cells can have."""
-    small = fitted(picture, (WIDTH // 4, HEIGHT // 4))
+    small = picture.resize((WIDTH // 4, HEIGHT // 4), Image.Resampling.BILINEAR)
     lights = np.linspace(DARKEST, 1, STRIPS)[:, None, None]
     strips = np.clip(PALETTE * lights, 0, 255).astype(np.uint8)
     strip = Image.fromarray(strips).resize((small.width, small.height), Image.Resampling.NEAREST)
@@ -65,10 +65,3 @@ def with_colours(picture: Image.Image) -> Image.Image:
     both.paste(small, (0, 0))
     both.paste(strip, (0, small.height))
     return both
-
-
-def fitted(picture: Image.Image, room: tuple[int, int]) -> Image.Image:
-    """Return the picture scaled to the largest size that fits into `room`, (width, height) in pixels."""
-    scale = min(room[0] / picture.width, room[1] / picture.height)
-    size = (round(picture.width * scale), round(picture.height * scale))
-    return picture if size == picture.size else picture.resize(size, Image.Resampling.BILINEAR)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from primordia.phylogeny.living import stops
 from primordia.runs.lives import Lives
 
 
@@ -12,8 +13,7 @@ def oldest_so_far(lives: Lives, ticks: np.ndarray) -> np.ndarray:
         lives: the lives of one world.
         ticks: int64 (F,), none before the first birth.
     """
-    forever = np.iinfo(np.int64).max
-    ends = np.where(lives.died, lives.ended, forever)
+    ends = stops(lives)
     # The first in the order of birth that still lives is the oldest of the living.
     living = np.searchsorted(np.maximum.accumulate(ends), ticks, side="right")
     living = np.minimum(living, len(lives) - 1)

@@ -61,3 +61,18 @@ def places_of(rising: np.ndarray, rows: np.ndarray) -> np.ndarray:
 def children(parent_row: np.ndarray) -> np.ndarray:
     """Return the number of children of each organism, int64 (L,)."""
     return np.bincount(parent_row[parent_row >= 0], minlength=len(parent_row))
+
+
+def generations(parent_row: np.ndarray) -> np.ndarray:
+    """Return the number of ancestors on record of each organism, int64 (L,).
+
+    Each step doubles the distance up to which ancestors are counted, so few steps are needed
+    (pointer jumping: Wyllie 1979).
+    """
+    far = np.where(parent_row >= 0, parent_row, np.arange(len(parent_row)))
+    distance = (parent_row >= 0).astype(np.int64)
+    while True:
+        further = far[far]
+        if np.array_equal(further, far):
+            return distance
+        distance, far = distance + distance[far], further

@@ -53,6 +53,15 @@ def spread(values: np.ndarray) -> np.ndarray:
     return quartiles
 
 
+def quantile(values: np.ndarray, q: float) -> np.ndarray:
+    """Return the smallest value that a share q of the values (..., N) does not exceed, (...).
+
+    The quantile is one of the values, never a mean of two, so infinities are allowed.
+    """
+    place = max(int(np.ceil(q * values.shape[-1])) - 1, 0)
+    return np.partition(values, place, axis=-1)[..., place]
+
+
 def positive(values: np.ndarray) -> np.ndarray:
     """Return the values, with NaN in place of values that a logarithmic axis cannot show."""
     return np.where(values > 0, values, np.nan)

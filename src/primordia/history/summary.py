@@ -1,15 +1,18 @@
 """The summary of a run in a few lines."""
 
 from collections import Counter
+from collections.abc import Iterable
+from itertools import groupby
 from typing import Any
 
 import numpy as np
 
-from primordia.history.quantiles import quantile
-from primordia.history.seeds import seeds_text
+from primordia.history.series import quantile
 
 MAX_LISTED = 4
 """Largest number of worlds that are described one by one."""
+MAX_RANGES = 4
+"""Largest number of ranges of seeds that are listed."""
 
 
 def summary(info: dict[str, Any]) -> str:
@@ -145,3 +148,17 @@ def _share(worlds: list[dict[str, Any]], name: str, what: str) -> str:
         return share
     middle, high = (f"{b:,.0f}" if np.isfinite(b) else "later" for b in (median, q3))
     return f"{share}, births until then: median {middle} (quartiles {q1:,.0f}, {high})"
+
+
+def seeds_text(seeds: Iterable[int]) -> str:
+    """Return the seeds of worlds in ascending order, such as `seed 3` or `seeds 0 to 4, 7`.
+
+    The worlds of several runs may have gaps between their seeds, and any order.
+    """
+    ordered = sorted(set(map(int, seeds)))
+    runs = groupby(enumerate(ordered), lambda placed: placed[1] - placed[0])
+    ranges = [[seed for _, seed in run] for _, run in runs]
+    parts = [f"{each[0]} to {each[-1]}" if len(each) > 1 else f"{each[0]}" for each in ranges]
+    if len(parts) > MAX_RANGES:
+        parts = [*parts[: MAX_RANGES - 1], f"others up to {ordered[-1]}"]
+    return f"{'seed' if len(ordered) == 1 else 'seeds'} {', '.join(parts)}"

@@ -4,7 +4,6 @@ A fork's records begin with the births of the organisms then alive. Their ancest
 before, are on record in the run that was forked.
 """
 
-import errno
 import os
 from collections.abc import Callable
 from dataclasses import replace
@@ -57,10 +56,6 @@ def whole_past(run: Archive, say: Say) -> Past:
                 source = archive(place)
                 longer = _joined(_until(source, fork.tick), past, run)
             except (InputError, Trouble):
-                continue
-            except OSError as error:
-                if error.errno != errno.ENAMETOOLONG:  # a place that no folder can have
-                    raise
                 continue
             if longer is not None:
                 past = longer

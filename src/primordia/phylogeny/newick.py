@@ -13,6 +13,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from primordia.history.ancestry import generations
 from primordia.phylogeny.phylogeny import Phylogeny
 from primordia.phylogeny.table import ROWS, ids
 
@@ -24,7 +25,7 @@ def newick(whole: Phylogeny) -> Iterator[pa.Buffer]:
     children begins with `,` or `(` or both, as needed. Then come label and length.
     """
     lives, parent = whole.lives, whole.lives.parent_row
-    order, depth = _children_first(parent)
+    order, depth = _children_first(parent), generations(parent)
     since = np.where(parent < 0, 0, lives.born[parent])
     for first in range(0, len(order), ROWS):
         rows = order[first : first + ROWS]
@@ -39,8 +40,8 @@ def newick(whole: Phylogeny) -> Iterator[pa.Buffer]:
         )
 
 
-def _children_first(parent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the rows in an order in which each row follows its descendants, and the depth of each row.
+def _children_first(parent: np.ndarray) -> np.ndarray:
+    """Return the rows in an order in which each row follows its descendants.
 
     Parents have lower rows than their children, so two loops over the rows need no recursion.
     """
@@ -49,17 +50,17 @@ def _children_first(parent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     for row in range(count - 1, -1, -1):
         if (above := parents[row]) >= 0:
             size[above] += size[row]
-    free, depth, top = array("q", bytes(8 * count)), array("q", bytes(8 * count)), 0
+    free, top = array("q", bytes(8 * count)), 0
     for row, above in enumerate(parents):
         if above < 0:
             free[row], top = top, top + size[row]
         else:
-            free[row], depth[row] = free[above], depth[above] + 1
+            free[row] = free[above]
             free[above] += size[row]
     # What is free after the last child of an organism is the organism's own place.
     order = np.empty(count, np.int64)
     order[np.frombuffer(free, np.int64)] = np.arange(count)
-    return order, np.frombuffer(depth, np.int64)
+    return order
 
 
 def _openings(

@@ -23,22 +23,22 @@ def chosen(
         organism: birth number; only this organism and its ancestors.
         world: only this world; if `organism` is given, world 0 by default.
         extant: only the living and their ancestors.
-        collapse: without organisms on unbranched stretches; see `collapsed`.
+        collapse: without organisms on unbranched stretches; see `_collapsed`.
 
     Raises:
         InputError: there is no such organism or world, or the choices contradict each other.
     """
     if organism is not None and extant:
         raise InputError("an organism's ID and --extant exclude each other; give one of them")
-    part = whole if organism is None and world is None else of_world(whole, world or 0)
+    part = whole if organism is None and world is None else _of_world(whole, world or 0)
     if organism is not None:
-        part = line_of(part, organism, world or 0)
+        part = _with_ancestors(part, np.array([part.lives.row(organism, world or 0)]))
     elif extant:
-        part = living_lines(part)
-    return collapsed(part) if collapse else part
+        part = _with_ancestors(part, np.flatnonzero(~part.lives.died))
+    return _collapsed(part) if collapse else part
 
 
-def of_world(whole: Phylogeny, world: int) -> Phylogeny:
+def _of_world(whole: Phylogeny, world: int) -> Phylogeny:
     """Return the organisms of one world.
 
     Raises:
@@ -51,21 +51,7 @@ def of_world(whole: Phylogeny, world: int) -> Phylogeny:
     return whole.take(slice(int(rows[0]), int(rows[-1]) + 1))
 
 
-def living_lines(whole: Phylogeny) -> Phylogeny:
-    """Return the living and all their ancestors."""
-    return _with_ancestors(whole, np.flatnonzero(~whole.lives.died))
-
-
-def line_of(whole: Phylogeny, organism: int, world: int) -> Phylogeny:
-    """Return an organism and all its ancestors, by birth number.
-
-    Raises:
-        InputError: no such organism was born.
-    """
-    return _with_ancestors(whole, np.array([whole.lives.row(organism, world)]))
-
-
-def collapsed(whole: Phylogeny) -> Phylogeny:
+def _collapsed(whole: Phylogeny) -> Phylogeny:
     """Return the phylogeny without dead organisms that have a parent and one child.
 
     The child becomes a child of the nearest ancestor that remains.

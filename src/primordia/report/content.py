@@ -6,7 +6,7 @@ from typing import Any
 
 from primordia.experiments.campaign import Campaign
 from primordia.history.info import info
-from primordia.history.seeds import seeds_text
+from primordia.history.summary import seeds_text
 from primordia.progress import steps
 from primordia.report.arms import arms, names
 from primordia.report.curves import panels

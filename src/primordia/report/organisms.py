@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from primordia.history.ancestry import children, nearest, places_of
+from primordia.history.ancestry import children, generations, nearest, places_of
 from primordia.law.world import BirthCause, Cause
 from primordia.report.packed import packed
 from primordia.runs.lives import Lives
@@ -43,21 +43,6 @@ def organisms(lives: Lives, rows: np.ndarray) -> dict[str, Any]:
         "causes": CAUSES,
         "origins": BIRTHS,
     }
-
-
-def generations(parent_row: np.ndarray) -> np.ndarray:
-    """Return the number of ancestors on record of each organism, int64 (L,).
-
-    Each step doubles the distance up to which ancestors are counted, so few steps are needed
-    (pointer jumping: Wyllie 1979).
-    """
-    far = np.where(parent_row >= 0, parent_row, np.arange(len(parent_row)))
-    distance = (parent_row >= 0).astype(np.int64)
-    while True:
-        further = far[far]
-        if np.array_equal(further, far):
-            return distance
-        distance, far = distance + distance[far], further
 
 
 def nearest_among(parent_row: np.ndarray, rows: np.ndarray) -> np.ndarray:

@@ -7,6 +7,7 @@ site can read the run through another name (DNS rebinding).
 """
 
 import sys
+import threading
 from collections.abc import Callable
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -14,6 +15,7 @@ from typing import Any
 
 from primordia.errors import InputError
 from primordia.report.watched import Watched
+from primordia.runs.records import Records
 
 HERE = "127.0.0.1"
 PORT = 8321
@@ -111,3 +113,28 @@ class Handler(BaseHTTPRequestHandler):
 
     def log_message(self, format: str, *args: object) -> None:
         """Print nothing about a request."""
+
+
+def watch(
+    open_: Callable[[], Records], port: int = PORT, begun: Callable[[str], object] = print
+) -> None:
+    """Serve the page of a run until this process ends or Ctrl-C is pressed.
+
+    Args:
+        open_: a function that opens the run for reading; it is called again at each new checkpoint.
+        port: the port at 127.0.0.1, or 0 for any free port.
+        begun: a function that is called with the address of the page when it is served.
+
+    Raises:
+        InputError: there is no run, nothing has lived in it yet, or the port is in use.
+        Trouble: the run is damaged.
+        KeyboardInterrupt: on Ctrl-C, unless Ctrl-C ends the process at once.
+    """
+    watched, ended = Watched(open_), threading.Event()
+    with Server(watched, port) as server:
+        threading.Thread(target=watched.follow, args=(ended,), daemon=True).start()
+        try:
+            begun(server.address)
+            server.serve_forever()
+        finally:
+            ended.set()

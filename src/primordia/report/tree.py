@@ -5,34 +5,38 @@ All other ancestors lie between two nodes. Each node is drawn as a bar on its ow
 level of the last line that left it, so that no two bars cross.
 """
 
-import heapq
-from dataclasses import dataclass, field
-from typing import Any
+from collections import defaultdict
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from primordia.figures.spacetime import line_codes
+from primordia.history.ancestry import children, generations, nearest, places_of, with_ancestors
 from primordia.report.ground import Ground
 
 LEAVES = 300
 """Largest number of the living that are shown. If more live, an evenly spaced sample is shown."""
 
 
-@dataclass
-class Node:
-    """One node of the tree; organisms are given by row."""
+class Nodes(NamedTuple):
+    """The N nodes of a tree: each is followed by its descendants, those of its youngest branch first."""
 
-    row: int
-    alive: bool
-    left_by: int
-    """a child of the parent node's organism, on the line to this node: the node's organism or its
-    ancestor"""
-    skipped: int = 0
-    """number of ancestors between the node and its parent"""
-    parent: "Node | None" = None
-    children: "list[Node]" = field(default_factory=list)
-    """child nodes by birth of `left_by`, the latest first"""
-    level: int = 0
+    row: np.ndarray
+    """row of each node's organism, int64 (N,)"""
+    alive: np.ndarray
+    """bool (N,)"""
+    parent: np.ndarray
+    """place of the parent node, or -1, int64 (N,)"""
+    left_by: np.ndarray
+    """row of a child of the parent node's organism, on the line to this node: the node's organism or
+    its ancestor; for a root its own row, int64 (N,)"""
+    skipped: np.ndarray
+    """number of ancestors between the node and its parent, int64 (N,)"""
+
+    @property
+    def level(self) -> np.ndarray:
+        """Level of each bar: the number of living nodes before it, int64 (N,)."""
+        return np.cumsum(self.alive) - self.alive
 
 
 def tree(ground: Ground) -> dict[str, Any] | None:
@@ -49,75 +53,53 @@ def tree(ground: Ground) -> dict[str, Any] | None:
     if not len(living):
         return None
     ordered = living[np.argsort(lives.cell[living], kind="stable")]
-    leaves = ordered[:: -(-len(ordered) // LEAVES)].tolist()
-    nodes = in_order(grown(lives.parent_row, leaves))
-    rows = np.array([node.row for node in nodes])
+    leaves = ordered[:: -(-len(ordered) // LEAVES)]
+    nodes = grown(lives.parent_row, leaves)
     now = np.array([lives.ended.max()])
-    inks = ground.inks(line_codes(lives, ground.clades, rows[:, None], now)[:, 0]).tolist()
-    start = np.searchsorted(lives.born, lives.born[[node.left_by for node in nodes]]).tolist()
-    begun = {node.row: place for node, place in zip(nodes, start, strict=True)}
-    place_of = {node.row: place for place, node in enumerate(nodes)}
+    start = np.searchsorted(lives.born, lives.born[nodes.left_by])
+    columns = {
+        "number": lives.id[nodes.row],
+        "born": lives.born[nodes.row],
+        "parent": nodes.parent,
+        "start": start,
+        # The bar of an ancestor ends where the last line leaves it: that of the next node.
+        "stop": np.where(nodes.alive, len(lives), np.append(start[1:], 0)),
+        "level": nodes.level,
+        "alive": nodes.alive,
+        "ink": ground.inks(line_codes(lives, ground.clades, nodes.row[:, None], now)[:, 0]),
+        "skipped": nodes.skipped,
+    }
+    rows = zip(*(column.tolist() for column in columns.values()), strict=True)
     return {
         "living": len(living),
         "shown": len(leaves),
-        "nodes": [
-            {
-                "number": int(lives.id[node.row]),
-                "born": int(lives.born[node.row]),
-                "parent": -1 if node.parent is None else place_of[node.parent.row],
-                "start": begun[node.row],
-                "stop": len(lives) if node.alive else begun[node.children[0].row],
-                "level": node.level,
-                "alive": node.alive,
-                "ink": ink,
-                "skipped": node.skipped,
-            }
-            for node, ink in zip(nodes, inks, strict=True)
-        ],
+        "nodes": [dict(zip(columns, row, strict=True)) for row in rows],
     }
 
 
-def grown(parent_row: np.ndarray, leaves: list[int]) -> list[Node]:
-    """Return the roots of the tree of some organisms, in order of birth.
+def grown(parent_row: np.ndarray, leaves: np.ndarray) -> Nodes:
+    """Return the tree of some organisms, with its roots in order of birth.
 
     Args:
         parent_row: row of each organism's parent, or -1; int64 (L,), parents before their children.
-        leaves: rows of the organisms.
+        leaves: rows of the organisms, int64.
     """
-    alive, roots = set(leaves), []
-    branches: dict[int, list[Node]] = {row: [] for row in leaves}
-    youngest_first = [-row for row in leaves]
-    heapq.heapify(youngest_first)
-    while youngest_first:
-        row = -heapq.heappop(youngest_first)
-        above, parent = branches.pop(row), int(parent_row[row])
-        if row in alive or len(above) > 1 or parent < 0:
-            node = Node(row, row in alive, row, children=above)
-            for child in above:
-                child.parent = node
-        else:
-            (node,) = above
-            node.left_by, node.skipped = row, node.skipped + 1
-        if parent < 0:
-            roots.append(node)
-        elif parent in branches:
-            branches[parent].append(node)
-        else:
-            branches[parent] = [node]
-            heapq.heappush(youngest_first, -parent)
-    return roots[::-1]
-
-
-def in_order(roots: list[Node]) -> list[Node]:
-    """Return all nodes, parents before their children, and give each its level."""
-    ordered, stack, level = [], roots[::-1], 0
+    rows = with_ancestors(leaves, parent_row)
+    parent = places_of(rows, parent_row[rows])
+    alive = np.isin(rows, leaves)
+    is_node = alive | (children(parent) > 1) | (parent < 0)
+    own = np.flatnonzero(is_node)
+    above = np.append(nearest(parent, own), -1)[parent]
+    left_by = nearest(parent, np.flatnonzero((parent < 0) | is_node[parent]))
+    below: dict[int, list[int]] = defaultdict(list)
+    for node in own[np.argsort(left_by[own])].tolist():
+        below[int(above[node])].append(node)
+    order, stack = [], below[-1][::-1]
     while stack:
-        node = stack.pop()
-        ordered.append(node)
-        if node.alive:
-            node.level, level = level, level + 1
-        stack += node.children[::-1]
-    for node in reversed(ordered):
-        if not node.alive:
-            node.level = node.children[0].level
-    return ordered
+        order.append(stack.pop())
+        stack += below[order[-1]]  # the youngest branch is taken first
+    place = np.full(len(rows) + 1, -1)  # the last is for no parent
+    place[order] = np.arange(len(order))
+    depth = np.append(generations(parent), -1)
+    skipped = depth[order] - depth[above[order]] - 1
+    return Nodes(rows[order], alive[order], place[above[order]], rows[left_by[order]], skipped)
