@@ -1,5 +1,6 @@
 """The doctor: what is installed, whether the promises hold, and that it finds when they do not."""
 
+import json
 from collections.abc import Iterator
 from importlib.metadata import metadata
 from pathlib import Path
@@ -61,7 +62,11 @@ def test_the_exit_status_says_whether_all_promises_hold(
     assert shown.exit_code == (1 if fault else 0)
     assert "holds  chunks\n" in shown.output
     assert ("FAILS  worlds: 1a2b" in shown.output) == bool(fault)
-    assert {"jax", "mujoco"} <= set(shown.output.split())
+    result = json.loads(CliRunner().invoke(doctor, ["--json"]).output)
+    assert result["holds"] == (not fault)
+    assert [row["fault"] for row in result["trials"]] == ["", fault]
+    assert result["facts"]["jax"]
+    assert "mujoco" in result["extras"]
 
 
 VERSIONS = dict.fromkeys((*device.PACKAGES, "device", "instruction_set"), "9")
