@@ -100,8 +100,6 @@ CASES: list[tuple[str, tuple[Any, ...], dict[str, Any], str, Any]] = [
     ("lineages", (), {}, "lines", call(ANY, None, None)),
     ("export", ("OUT", 4, 5), {"world": 2}, "export", call(ANY, OUT, (4, 5), 2)),
     ("export", (OUT,), {}, "export", call(ANY, OUT, (), 0)),
-    ("rebuild", (3, 2), {}, "rebuild", call(ANY, 3, 2)),
-    ("rebuild", (3,), {}, "rebuild", call(ANY, 3, 0)),
 ]  # fmt: skip
 """A method, its arguments, the function behind it, and that function's arguments."""
 

@@ -94,7 +94,7 @@ def test_wrong_words_are_one_line(poles: primordia.Run, tmp_path: Path) -> None:
         (("effects", file, "--world", 1), "has no worlds; leave out --world"),
         (("effects", poles.path, "--task", "CartPole-survival"), "leave out --task"),
         (("effects", poles.path, 10**6), "no organism"),
-        (("line", file), "a genome file holds no ancestors"),
+        (("line", file), "is neither a run of primordia"),
         (("ablate", poles.path, "--wind", 3), "this run's habitat has no setting 'wind'"),
     ):
         done = here("assay", *words)

@@ -188,7 +188,7 @@ def test_each_of_several_arms_has_a_table_and_a_folder_of_figures(
     found = {f"runs/{name}": [Number(place)] for place, name in enumerate(arms)}
     pictures = [Path("x.png"), Path("x.svg")]
     with (
-        patch("primordia.figures.assays.effects.draw", side_effect=tuple) as draw,
+        patch("primordia.figures.assays.effects", side_effect=tuple) as draw,
         patch("primordia.figures.style.save", return_value=pictures) as save,
         patch.object(options, "show_table") as table,
     ):
