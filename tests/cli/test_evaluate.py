@@ -1,4 +1,4 @@
-"""The table of `evaluate`: its rows and its notes."""
+"""The texts of `evaluate`: the spreads and counts of one organism, and the rows and notes of groups."""
 
 from unittest.mock import patch
 
@@ -7,6 +7,7 @@ import pytest
 
 from primordia.assays.controls import Standing
 from primordia.cli import evaluate
+from primordia.cli.evaluate import evaluation_text
 from primordia.organism.playing.evaluation import Evaluation
 from primordia.organism.playing.games import Games
 from tests.commands import here
@@ -23,6 +24,38 @@ def played(
     world: int, ticks: list[int], whole: Games | None = None, same: bool = False
 ) -> Evaluation:
     return Evaluation(7, world, "live", games(ticks), whole, deterministic=same)
+
+
+def test_the_text_about_an_organism_has_its_spreads_and_counts() -> None:
+    lived = games([5000, 1000, 4000, 2000, 3000], [True, True, False, True, True])
+    whole = games([70, 50, 90, 60, 80], [True, False, False, True, False], [0, 4, 3, 1, 2])
+    found = Evaluation(7, 2, "frozen", lived, whole, deterministic=False)
+    assert evaluation_text(found, {"sticky": 0.25, "noops": 30}).splitlines() == [
+        "organism 7 of world 2: 5 games, sticky 0.25, noops 30, senses frozen",
+        "  5 distinct games",
+        "  lifespan  median 3,000 (quartiles 2,000, 4,000), minimum 1,000, maximum 5,000; 1 still"
+        " alive when cut",
+        "  score     median 2 (quartiles 1, 3), minimum 0, maximum 4",
+        "  length    median 70 (quartiles 60, 80), minimum 50, maximum 90; 3 still going on when cut",
+    ]
+    assert evaluation_text(played(0, [40], same=True), {}).splitlines() == [
+        "organism 7 of world 0: 1 game",
+        "  1 distinct game; nothing is random, so all games are the same",
+        "  lifespan  40",
+    ]
+
+
+def test_the_extremes_are_shown_even_if_the_quartiles_are_equal() -> None:
+    lived = games([20, 100, 100, 100, 100])
+    found = Evaluation(7, 2, "live", lived, None, deterministic=False)
+    spread = "median 100 (quartiles 100, 100), minimum 20, maximum 100"
+    assert evaluation_text(found, {}).splitlines()[-1] == f"  lifespan  {spread}"
+
+
+def test_random_games_may_happen_to_be_equal() -> None:
+    equal = games([9, 9])._replace(course=np.zeros(2, np.uint64))
+    found = Evaluation(7, 0, "live", equal, None, deterministic=False)
+    assert evaluation_text(found, {}).splitlines()[1] == "  1 distinct game"
 
 
 def standing(name: str, chosen_from: int, *lived: tuple[int, int], score: int = 0) -> Standing:

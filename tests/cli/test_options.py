@@ -26,6 +26,7 @@ def run() -> Iterator[MagicMock]:
     for name in ("ancestors", "organism"):
         getattr(noted, name).return_value = MagicMock()
     noted.ancestors.return_value.to_dict.return_value = {}
+    noted.organism.return_value.evaluate.return_value.to_dict.return_value = {}
     for name in ("standings", "lineages", "heredity", "threshold", "resume"):
         getattr(noted, name).return_value = []
     noted.shadow.return_value.to_dict.return_value = {}
@@ -142,6 +143,15 @@ def test_a_life_is_lived_again_with_the_given_options(run: MagicMock) -> None:
         assert asked.call_args == call(opened, 0, 0, since=0, save=None, film=None)
         does("relive", RUN, 5, "--json")
         assert asked.call_args == call(opened, 5, 0, since=None, save=None, film=None)
+
+
+def test_one_organism_is_evaluated_in_its_world(run: MagicMock) -> None:
+    for organism, world, number in ((5, (), 0), (5, ("--world", 2), 2), (0, ("--world", 0), 0)):
+        asked = ("--organism", organism, *world, "--freeze-senses", "--games", 3, "--json")
+        does("evaluate", RUN, *asked)
+        run.organism.assert_called_with(organism, number)
+        options = {"games": 3, "ticks": 100_000, "senses": "frozen", "habitat": {}}
+        run.organism.return_value.evaluate.assert_called_with(**options)
 
 
 SHORT = ("--games", 2, "--ticks", 9, "--sticky", 0.5, "--json")

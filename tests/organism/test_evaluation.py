@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 import primordia
+from primordia.cli.evaluate import _quartiles
 from primordia.errors import InputError
 from primordia.organism.organism import Organism
 from primordia.organism.playing import games
-from primordia.organism.playing.evaluation import Evaluation, evaluate
+from primordia.organism.playing.evaluation import Evaluation, Spread, evaluate
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
@@ -129,6 +130,8 @@ def test_games_start_at_random_where_lives_do(poles: Path) -> None:
 
 
 def test_one_random_game_is_not_taken_for_all_games(poles: Path) -> None:
+    one = here("evaluate", poles, "--organism", 0, "--games", 1).stdout
+    assert "  1 distinct game\n" in one
     champions = here("evaluate", poles, "--games", 1, "--founders", 5, "--ticks", 50).stdout
     assert "champion" in champions
     assert "are the same" not in champions
@@ -136,24 +139,43 @@ def test_one_random_game_is_not_taken_for_all_games(poles: Path) -> None:
 
 @pytest.mark.slow
 def test_the_command_prints_figures_and_json(pong: Path) -> None:
-    few = "--founders", 2
-    assert "All games of an organism are the same" in here("evaluate", pong, *few).stdout
+    organism = "--organism", str(primordia.load(pong).oldest().id)
+    one = here("evaluate", pong, *organism).stdout
+    assert "1 distinct game; nothing is random" in one
+    assert "All games of an organism are the same" in here("evaluate", pong, "--founders", 2).stdout
     sticky = "--games", "3", "--sticky", "0.25", "--ticks", "300"
-    assert "games cut at 300 ticks, sticky 0.25" in here("evaluate", pong, *few, *sticky).stdout
-    printed = json.loads(here("evaluate", pong, *few, "--freeze-senses", "--json").stdout)
-    (champion, *_) = printed["rows"]
-    assert champion["games"] == 1
+    many = here("evaluate", pong, *organism, *sticky).stdout
+    assert "3 games, sticky 0.25" in many
+    assert "3 still going on when cut" in many
+    printed = json.loads(here("evaluate", pong, *organism, "--freeze-senses", "--json").stdout)
+    assert (printed["games"], printed["senses"]) == (1, "frozen")
+    assert set(printed["score"]) == {"minimum", "q1", "median", "q3", "maximum"}
+
+
+def test_a_number_alone_means_that_all_games_have_it() -> None:
+    some, every = np.array([20] * 7 + [100] * 23), np.full(30, 100)
+    text = "median 100 (quartiles 100, 100), minimum 20, maximum 100"
+    assert _quartiles(Spread.of(some)._asdict()) == text
+    assert _quartiles(Spread.of(every)._asdict()) == "100"
+
+
+def test_scores_below_one_are_not_rounded_to_nothing() -> None:
+    metres = Spread.of(np.array([0.125, 0.25, 0.375, 1234.5, -0.5]))._asdict()
+    text = "median 0.25 (quartiles 0.125, 0.375), minimum -0.5, maximum 1,234"
+    assert _quartiles(metres) == text
 
 
 def test_any_setting_of_the_habitat_is_a_flag(poles: Path) -> None:
     """This holds also for a setting with the name of an argument of `evaluate` in Python."""
-    few = "--founders", 2, "--games", 2, "--ticks", 50
-    wide = here("evaluate", poles, *few, "--angle_limit", "180", "--track_limit", "1e9")
-    assert "cut at 50 ticks, angle_limit 180, track_limit 1000000000.0" in wide.stdout
+    organism = "--organism", str(primordia.load(poles).oldest().id)
+    changes = "--angle_limit", "180", "--track_limit", "1e9"
+    wide = here("evaluate", poles, *organism, "--ticks", "50", *changes)
+    assert "30 games, angle_limit 180, track_limit 1000000000.0" in wide.stdout
+    assert "30 still alive when cut" in wide.stdout
     same = '["x", "x_dot", "theta", "theta_dot"]'
-    done = here("evaluate", poles, *few, "--senses", same, "--json")
-    plain = here("evaluate", poles, *few, "--json")
-    assert json.loads(done.stdout) == json.loads(plain.stdout)
+    done = here("evaluate", poles, *organism, "--games", "2", "--senses", same, "--json")
+    plain = here("evaluate", poles, *organism, "--games", "2", "--json")
+    assert json.loads(done.stdout)["lifespan"] == json.loads(plain.stdout)["lifespan"]
 
 
 def test_help_on_a_run_lists_the_settings_of_its_habitat(poles: Path, mill: Path) -> None:
@@ -171,7 +193,9 @@ def test_wrong_input_is_an_error_that_says_why(poles: Path) -> None:
         (("--angle_limit",), "--angle_limit needs a value"),
         (("--angle_limit", "-1"), "habitat.angle_limit"),
         (("--open-loop", "--freeze-senses"), "exclude each other"),
+        (("--organism", 0, "--founders", 500), "exclude each other"),
         (("--games", "0"), "--games"),
+        (("--organism", "9999999"), "no organism 9999999"),
     ):
         complains(here("evaluate", poles, *words), 2, part)
 

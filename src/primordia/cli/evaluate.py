@@ -13,6 +13,7 @@ from primordia.errors import InputError
 
 if TYPE_CHECKING:
     from primordia.assays.controls import Standing
+    from primordia.organism.playing.evaluation import Evaluation
 
 SENSES = {
     "live": "",
@@ -21,9 +22,16 @@ SENSES = {
 }
 
 
-@click.command(cls=HabitatCommand, short_help="Measure champions in whole games.")
+@click.command(cls=HabitatCommand, short_help="Measure champions, or one organism, in whole games.")
 @run_argument
-@click.option("--world", type=int, help="Measure this world alone [all].")
+@click.option(
+    "--organism", type=int, help="Birth number of an organism; only this organism is measured."
+)
+@click.option(
+    "--world",
+    type=int,
+    help="World of --organism [0]; without --organism, measure this world alone [all].",
+)
 @click.option("--games", type=COUNT, default=30, show_default=True, help="Number of games.")
 @click.option(
     "--founders",
@@ -56,6 +64,7 @@ def evaluate(
     habitat: dict[str, Any],
     /,
     run: Path,
+    organism: int | None,
     world: int | None,
     games: int,
     founders: int | None,
@@ -79,9 +88,15 @@ def evaluate(
 
     if freeze_senses and open_loop:
         raise InputError("--freeze-senses and --open-loop exclude each other; give one of them")
+    if organism is not None and founders is not None:
+        raise InputError("--founders and --organism exclude each other: one organism plays alone")
     senses: Any = "frozen" if freeze_senses else "ignored" if open_loop else "live"
     opened = load(run, trust)
     options: Any = {"games": games, "ticks": ticks, "senses": senses, "habitat": habitat}
+    if organism is not None:
+        result = opened.organism(organism, world or 0).evaluate(**options)
+        click.echo(json.dumps(result.to_dict()) if as_json else evaluation_text(result, habitat))
+        return
     number = {} if founders is None else {"founders": founders}
     found = opened.standings(world=world, **number, **options)
     if as_json:
@@ -91,6 +106,25 @@ def evaluate(
             found,
             f"{run}: games cut at {ticks:,} ticks{_changed(habitat)}{SENSES[senses]}",
         )
+
+
+def evaluation_text(result: "Evaluation", changes: dict[str, Any]) -> str:
+    """Return the results in a few lines."""
+    values = result.to_dict()
+    distinct = f"{_games(result.distinct, 'distinct ')}"
+    if result.deterministic:
+        distinct += "; nothing is random, so all games are the same"
+    lines = [
+        f"organism {result.organism} of world {result.world}: "
+        f"{_games(result.games)}{_changed(changes)}"
+        f"{SENSES[result.senses]}",
+        f"  {distinct}",
+        f"  lifespan  {_quartiles(values['lifespan'])}{_cut(values['alive_when_cut'], 'alive')}",
+    ]
+    if "score" in values:
+        lines.append(f"  score     {_quartiles(values['score'])}")
+        lines.append(f"  length    {_quartiles(values['length'])}{_cut(values['cut'], 'going on')}")
+    return "\n".join(lines)
 
 
 def show_standings(standings: "list[Standing]", title: str) -> None:
@@ -130,3 +164,21 @@ def _notes(standings: "list[Standing]") -> list[str]:
 
 def _changed(habitat: dict[str, Any]) -> str:
     return "".join(f", {name} {value}" for name, value in habitat.items())
+
+
+def _games(count: int, kind: str = "") -> str:
+    return f"1 {kind}game" if count == 1 else f"{count:,} {kind}games"
+
+
+def _quartiles(spread: dict[str, float]) -> str:
+    from primordia.comparison.tables import number_text
+
+    told = {name: number_text(value) for name, value in spread.items()}
+    if spread["minimum"] == spread["maximum"]:
+        return told["median"]
+    quartiles = f"quartiles {told['q1']}, {told['q3']}"
+    return f"median {told['median']} ({quartiles}), minimum {told['minimum']}, maximum {told['maximum']}"
+
+
+def _cut(count: int, state: str) -> str:
+    return f"; {count:,} still {state} when cut" if count else ""
