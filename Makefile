@@ -4,7 +4,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 # These versions are tested. `make CONSTRAINTS= demo` takes the newest releases instead.
 CONSTRAINTS ?= --constraint constraints.txt --build-constraint constraints.txt
-# Tests keep the code that they compile, which saves a third of the time when they are run again.
+# Tests keep the code that they compile, which saves almost half of the time when they are run again.
 TESTS := JAX_COMPILATION_CACHE_DIR=$(CURDIR)/$(VENV)/compiled $(BIN)/python -m pytest --numprocesses 2
 
 .PHONY: demo test quick slow newest oldest compiled check docs format figures bench mutants constraints clean
@@ -20,7 +20,7 @@ demo: $(VENV)/installed  ## evolve pole balancers, draw and report them, and fil
 	@echo "Explore    runs/demo/report.html in a browser: every organism, its line of descent, the film of its world"
 	@echo 'Read on    docs/tutorial.md, ten minutes; `source .venv/bin/activate` puts `primordia` on the path'
 
-test: $(VENV)/installed-dev compiled  ## run all tests: about twenty minutes on two cores, less the second time
+test: $(VENV)/installed-dev compiled  ## run the tests: about nine minutes on two cores, five the second time
 	$(TESTS) --dist loadfile --no-loadscope-reorder
 
 quick: $(VENV)/installed-dev compiled  ## test each promise once, with the tests in tests/quick.txt: a minute on two cores

@@ -233,7 +233,6 @@ def climate(run: Path) -> dict[str, Any]:
     return primordia.load(run).info()["worlds"][0]["climate"]
 
 
-@pytest.mark.slow
 def test_changed_settings_hold_and_others_stay_as_seasons_left_them(
     mill: Path, tmp_path: Path
 ) -> None:

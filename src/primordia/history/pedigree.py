@@ -142,6 +142,8 @@ class _Made:
 
 def _mate_rows(run: Records) -> np.ndarray:
     """Return the row of each organism's mate, int64 (L,); -1 without a mate."""
+    if not run.schema.mates:
+        return np.full(len(run.lives), -1)
     lives, number = run.lives, run.mates_of(run.lives)
     rows = lives.rows_of(lives.world, number)
     odd = (number >= 0) & ((rows < 0) | (number >= lives.id))
