@@ -90,7 +90,6 @@ def test_another_call_replaces_what_was_written(run: Path, tmp_path: Path) -> No
     shows(tmp_path, run)
 
 
-@pytest.mark.slow
 def test_arms_have_folders_and_all_worlds_one_group(tmp_path: Path) -> None:
     out = tmp_path / "out"
     file = herds(tmp_path)
