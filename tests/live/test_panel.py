@@ -172,11 +172,11 @@ def test_only_a_saturated_world_is_called_saturated() -> None:
 @pytest.mark.parametrize(
     ("alive", "calm", "shown", "filled"),
     [
-        ([7], [500], "full and calm for 0 of 1,000 ticks", 0),
-        ([8], [500], "full and calm for 500 of 1,000 ticks", 12),
-        ([8], [2000], "full and calm for 1,000 of 1,000 ticks", 24),
-        ([7, 8], [900, 250], "one world full and calm for 250 of 1,000 ticks", 6),
-        ([7, 0], [900, 900], "no world full and calm for 1,000 ticks", 0),
+        ([7], [500], "calm: 0 of 1,000 ticks", 0),
+        ([8], [500], "calm: 500 of 1,000 ticks", 12),
+        ([8], [2000], "calm: 1,000 of 1,000 ticks", 24),
+        ([7, 8], [900, 250], "calmest: 250 of 1,000 ticks", 6),
+        ([7, 0], [900, 900], "calmest: 0 of 1,000 ticks", 0),
     ],
 )
 def test_a_bar_of_24_columns_grows_only_with_the_calm_of_full_worlds(

@@ -137,7 +137,7 @@ def test_the_bar_shows_the_ticks_that_saturation_requires() -> None:
     world = status(1, calm=[7])
     organisms = world.engine.state.world.organisms
     organisms.alive[:] = True
-    assert "full and calm for 7 of 99 ticks" in "\n".join(text(view()._rows(world)))
+    assert "calm: 7 of 99 ticks" in "\n".join(text(view()._rows(world)))
 
 
 def test_keys_are_named_where_they_mean_something() -> None:

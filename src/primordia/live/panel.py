@@ -111,10 +111,8 @@ def saturation(census: Census, cells: int, calm_needed: int, width: int) -> Row:
     if done:
         return _bar(done / worlds, f"{done:,} of {worlds:,} worlds saturated", width)
     calm = np.where(census.alive == cells, census.calm, 0)
-    longest, needed = min(int(calm.max()), calm_needed), f"{calm_needed:,}"
-    text = f"{'' if worlds == 1 else 'one world '}full and calm for {longest:,} of {needed} ticks"
-    if worlds > 1 and not longest:
-        text = f"no world full and calm for {needed} ticks"
+    longest, name = min(int(calm.max()), calm_needed), "calm" if worlds == 1 else "calmest"
+    text = f"{name}: {longest:,} of {calm_needed:,} ticks"
     return _bar(longest / calm_needed, text, width)
 
 
