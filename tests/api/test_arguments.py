@@ -211,14 +211,19 @@ def test_a_run_goes_on_with_the_limits_and_the_interval_that_are_given(opened: M
         assert made.path == OUT
 
 
-def test_a_run_begins_with_the_settings_and_keywords_that_are_given() -> None:
+@pytest.mark.parametrize(("resume", "begins"), [(False, "start"), (True, "begin_or_resume")])
+def test_a_run_begins_with_the_settings_and_keywords_that_are_given(
+    resume: bool, begins: str
+) -> None:
     with (
-        patch("primordia.api.loop.start") as live,
+        patch(f"primordia.api.loop.{begins}") as live,
         patch("primordia.api.devices.selected") as selected,
     ):
         given: dict[str, Any] = {"checkpoint_every": 7.0, "listen": print}
         settings = {"cells": 8, "seed": 1}
-        run = primordia.run("CartPole-survival", "OUT", settings, device="gpu", seed=2, **given)
+        run = primordia.run(
+            "CartPole-survival", "OUT", settings, resume=resume, device="gpu", seed=2, **given
+        )
     chosen, place = live.call_args.args
     assert (chosen.cells, chosen.seed, place, run.path) == (8, 2, OUT, OUT)
     assert live.call_args.kwargs == given

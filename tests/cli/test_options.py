@@ -124,12 +124,12 @@ def test_a_run_is_begun_with_the_settings_of_its_flags(
     given = {"cells": 8, "ancestors": ["a", "b"], "stop": ENDS}
     with patch("primordia.api.run") as asked:
         ways = (*WAYS, "--device", "gpu")
-        does("run", task, "--out", OUT, *flags, *LIMITS, *ways)
-        asked.assert_called_once_with(task, OUT, given, device="gpu", **WORLDS)
+        does("run", task, "--out", OUT, "--resume", *flags, *LIMITS, *ways)
+        asked.assert_called_once_with(task, OUT, given, resume=True, device="gpu", **WORLDS)
         does("run", task, "--seed", 3, "--quiet")
         own = {"checkpoint_every": 60.0, "device": "cpu", "listen": None}
         place = Path("runs", f"{task}-seed3")
-        assert asked.call_args == call(task, place, {"seed": 3}, **own)
+        assert asked.call_args == call(task, place, {"seed": 3}, resume=False, **own)
 
 
 def test_a_life_is_lived_again_with_the_given_options(run: MagicMock) -> None:

@@ -123,6 +123,75 @@ def test_runs_of_another_format_are_refused(format: int, tmp_path: Path) -> None
     assert str(raised.value) == says
 
 
+@pytest.mark.parametrize(
+    ("changes", "differs"),
+    [
+        ({"about": "another"}, None),
+        ({"stop": {"ticks": 3}}, None),
+        ({"ancestors": ["a"]}, None),
+        ({"seed": 1}, "seed is 0 there, and 1 here"),
+        ({"metabolism": {"store": 9.0}}, "metabolism"),
+        ({"saturation_ticks": 9}, r"saturation_ticks is \d+ there, and 9 here"),
+    ],
+)
+def test_a_run_goes_on_only_with_the_settings_of_its_beginning(
+    changes: dict[str, Any], differs: str | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Limits, description and the paths of ancestors may differ."""
+    there = config(MEADOW)
+    here = there.model_copy(update=changes) if "ancestors" in changes else config(MEADOW, **changes)
+    monkeypatch.setattr(directory, "read_config", lambda _: there)
+    if differs is None:
+        directory.check_same_settings(here, tmp_path)
+        return
+    with pytest.raises(InputError, match=f"was begun with other settings: {differs}"):
+        directory.check_same_settings(here, tmp_path)
+
+
+def test_a_run_with_settings_that_are_not_given_does_not_go_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    there = config(MEADOW, mutation={"blocks": {"recurrent": {"scale": 0.5}}})
+    monkeypatch.setattr(directory, "read_config", lambda _: there)
+    differs = "mutation.blocks.recurrent.scale is 0.5 there, and None here; choose another --out"
+    with pytest.raises(InputError, match=differs):
+        directory.check_same_settings(config(MEADOW), tmp_path)
+
+
+@pytest.mark.parametrize(
+    "limits",
+    [
+        {"ticks": 7, "births": 5, "until": "saturation"},
+        {"ticks": 7, "births": None, "until": None},
+        {"ticks": None, "births": 5, "until": None},
+    ],
+)
+def test_begin_or_resume_passes_on_all_its_arguments(
+    limits: dict[str, Any], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A limit that is not given again is removed."""
+    calls = list[tuple[Any, ...]]()
+    settings = config(MEADOW).model_copy(update={"stop": Stop(**limits)})
+
+    def listen(_: loop.Status) -> None: ...
+
+    def resumed(*given: Any, **named: Any) -> list[str]:
+        calls.append((*given, named))
+        return ["a note"]
+
+    monkeypatch.setattr(loop, "start", lambda *given, **named: calls.append((*given, named)))
+    monkeypatch.setattr(loop, "resume", resumed)
+    monkeypatch.setattr(directory, "check_same_settings", lambda *given: calls.append(given))
+    passed = {"checkpoint_every": 3.0, "listen": listen}
+    for there in (True, False):
+        monkeypatch.setattr(directory, "clear_unbegun", lambda _, there=there: there)
+        notes = loop.begin_or_resume(settings, tmp_path, **passed)
+        assert notes == ([] if there else ["a note"])
+    assert calls == [
+        (settings, tmp_path, passed), (settings, tmp_path), (tmp_path, limits, passed)
+    ]  # fmt: skip
+
+
 @pytest.mark.parametrize("seconds", [-0.1, float("nan"), float("-inf")])
 def test_seconds_between_checkpoints_are_0_or_more(seconds: float, tmp_path: Path) -> None:
     loop._check_interval(0)

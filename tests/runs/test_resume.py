@@ -188,16 +188,30 @@ def test_verify_finds_no_difference_in_a_good_run(mill: Path, tmp_path: Path) ->
     assert "is verified" in done.stdout
 
 
+def test_a_script_begins_a_run_or_goes_on_with_it(mill: Path, tmp_path: Path) -> None:
+    """The same words three times: the run is begun, gone on with, and found to have ended."""
+    out = tmp_path / "run"
+    words = "run", mill, "--seed", 3, "--out", out, "--quiet"
+    assert here(*words, "--ticks", 100, "--resume").returncode == 0
+    for _ in range(2):
+        done = here(*words, "--ticks", 200, "--resume")
+        assert done.returncode == 0, done.stderr
+        assert primordia.load(out).info()["worlds"][1]["ticks"] == 200
+    assert here("resume", out).returncode == 0
+    complains(here(*words, "--cells", 5, "--resume"), 2, "cells is 24 there, and 5 here")
+    complains(here(*words), 2, "exists already")
+
+
 def test_what_a_killed_start_has_left_is_no_obstacle(mill: Path, tmp_path: Path) -> None:
     (tmp_path / "run" / "births").mkdir(parents=True)
     (tmp_path / "run" / "config.toml").write_text("half")
     (tmp_path / "run" / directory.UNBEGUN).touch()
-    run = primordia.run(str(mill), tmp_path / "run", stop={"ticks": 5})
+    run = primordia.run(str(mill), tmp_path / "run", stop={"ticks": 5}, resume=True)
     assert run.info()["worlds"][0]["ticks"] == 5
-    with pytest.raises(InputError, match="exists already"):
-        primordia.run(str(mill), tmp_path / "run")
+    with pytest.raises(InputError, match="needs the directory of the run"):
+        primordia.run("CartPole-survival", resume=True)
     (tmp_path / "other").mkdir()
     (tmp_path / "other" / "mine.txt").touch()
     with pytest.raises(InputError, match="is not a run"):
-        primordia.run("CartPole-survival", tmp_path / "other")
+        primordia.run("CartPole-survival", tmp_path / "other", resume=True)
     assert (tmp_path / "other" / "mine.txt").exists()

@@ -20,7 +20,7 @@ def test_no_file_of_the_user_is_removed_for_a_run(tmp_path: Path) -> None:
         (mine / name).parent.mkdir(parents=True, exist_ok=True)
         (mine / name).write_text("mine")
     before = contents(mine)
-    done = here("run", *SMALL, "--ticks", 9, "--out", mine)
+    done = here("run", *SMALL, "--ticks", 9, "--resume", "--out", mine)
     complains(done, 2, f"{mine} exists already and is not a run")
     assert contents(mine) == before
 

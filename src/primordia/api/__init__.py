@@ -44,6 +44,7 @@ def run(
     out: str | Path | None = None,
     settings: Mapping[str, Any] | None = None,
     *,
+    resume: bool = False,
     checkpoint_every: float = 60.0,
     device: str = "cpu",
     listen: Listener | None = None,
@@ -54,6 +55,7 @@ def run(
     Args:
         task: name of a built-in task, or a TOML file.
         out: directory of the new run; by default a new directory under `runs/`.
+        resume: if `out` already holds a run, go on with that run instead of raising InputError.
         checkpoint_every: seconds from one checkpoint to the next.
         device: `cpu` or `gpu`. All devices of this kind are used if the number of worlds allows
             it; see `device.sharing`.
@@ -69,8 +71,13 @@ def run(
     """
     with devices.selected(device):
         chosen = config.load(task, {**(settings or {}), **more})
+        if resume and out is None:
+            raise InputError(
+                "resume needs the directory of the run; give `out` (--out on the command line)"
+            )
         path = Path(out) if out is not None else fresh_directory(default_name(chosen))
-        loop.start(chosen, path, checkpoint_every=checkpoint_every, listen=listen)
+        live = loop.begin_or_resume if resume else loop.start
+        live(chosen, path, checkpoint_every=checkpoint_every, listen=listen)
     return Run(path)
 
 

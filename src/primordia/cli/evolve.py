@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     help="Start from the genomes in a file (`primordia export`); may be repeated.",
 )
 @limit_options
+@click.option("--resume", is_flag=True, help="If --out holds a run, go on with this run.")
 @checkpoint_option
 @device_option
 @speed_option

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from filelock import FileLock, Timeout
 from pydantic import BaseModel, ConfigDict, Field
@@ -20,7 +21,7 @@ from primordia.runs import checkpoint, code, kept
 from primordia.runs.description import Description, from_json
 from primordia.runs.manifest import INPUTS
 from primordia.runs.schema import TABLES
-from primordia.settings.tables import from_toml
+from primordia.settings.tables import flat, from_toml
 
 FORMAT = 2
 """format of run directories; other formats are refused"""
@@ -38,7 +39,6 @@ OWN = (VERSIONS, *FOLDERS, code.FOLDER, kept.FOLDER, checkpoint.ORIGIN, *INPUTS,
 def create(run: Path, config: Config, fill: Callable[[], object] | None = None) -> Iterator[None]:
     """Write settings, founders, code and versions into a new or empty directory, and hold its lock.
 
-    Files that a killed process left while it started a run there are removed.
     The versions are written last: a directory with versions is a run. If the `with` block ends by
     an error or a signal before the first checkpoint, all files are removed.
 
@@ -51,7 +51,6 @@ def create(run: Path, config: Config, fill: Callable[[], object] | None = None) 
         InputError: the directory is taken.
         Trouble: a file cannot be written.
     """
-    clear_unbegun(run)
     refuse_if_taken(run)
     habitat = config.build_habitat()
     law = config.build_law(habitat)
@@ -140,6 +139,20 @@ def refuse_if_taken(run: Path) -> None:
         )
     if run.exists() and not (run.is_dir() and {each.name for each in run.iterdir()} <= {LOCK}):
         raise InputError(f"{run} exists already and is not a run; choose another --out")
+
+
+def check_same_settings(config: Config, run: Path) -> None:
+    """Raise InputError if a run was begun with settings other than these; limits may differ."""
+    ignored: Any = {"about", "stop", "ancestors"}
+    here, there = (
+        flat(each.model_dump(mode="json", exclude=ignored)) for each in (config, read_config(run))
+    )
+    for name in here | there:
+        if (ours := here.get(name)) != (theirs := there.get(name)):
+            raise InputError(
+                f"{run} was begun with other settings: {name} is {theirs} there, and {ours} here;"
+                " choose another --out"
+            )
 
 
 def make_folders(run: Path) -> None:

@@ -73,6 +73,22 @@ def start(
         drive(engine, recorder, run, progress, checkpoint_every, listen)
 
 
+def begin_or_resume(
+    config: Config, run: Path, *, checkpoint_every: float = 60.0, listen: Listener | None = None
+) -> list[str]:
+    """Begin a run, or resume it if it has begun; see `start` and `resume`.
+
+    Raises:
+        InputError: the run was begun with other settings; limits may differ.
+    """
+    if directory.clear_unbegun(run):
+        start(config, run, checkpoint_every=checkpoint_every, listen=listen)
+        return []
+    directory.check_same_settings(config, run)
+    limits = config.stop.model_dump()
+    return resume(run, limits, checkpoint_every=checkpoint_every, listen=listen)
+
+
 def resume(
     run: Path,
     limits: dict[str, Any] | None = None,
