@@ -26,7 +26,7 @@ test: $(VENV)/installed-dev compiled  ## run the tests: about nine minutes on tw
 quick: $(VENV)/installed-dev compiled  ## test each promise once, with the tests in tests/quick.txt: a minute on two cores
 	$(TESTS) --dist loadfile --no-loadscope-reorder @tests/quick.txt
 
-slow: $(VENV)/installed-dev compiled  ## run the tests marked slow: an hour of kills, forged runs, generated inputs, all goldens and the oldest releases
+slow: $(VENV)/installed-dev compiled  ## run the tests marked slow: more than an hour of kills, forged runs, generated inputs, all goldens and the oldest releases
 	$(TESTS) -m slow
 	$(MAKE) oldest
 
