@@ -210,6 +210,7 @@ def test_the_status_tells_what_is_done_without_opening_a_run(tmp_path: Path) -> 
     for arm in told.arms:
         lives = sorted(world["organism_ticks"] / world["deaths"] for world in arms[arm.name])
         assert arm.life == (lives[(len(lives) - 1) // 2] + lives[len(lives) // 2]) / 2
+        assert arm.life_interval is None
         assert arm.saturated == sum(world["saturation"] is not None for world in arms[arm.name])
     text = here("experiment", chosen.path, "--status").stdout
     assert "3 of 4 jobs done" in text

@@ -5,14 +5,36 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 import tomli_w
 
 from primordia.errors import InputError
 from primordia.experiments.ledger import Entry, Ledger, WorldCounts
 from primordia.experiments.plan import ArmPlan, Job, Plan, recorded
-from primordia.experiments.status import ArmStatus, CampaignStatus, status
+from primordia.experiments.status import ArmStatus, CampaignStatus, _interval, status
 from primordia.experiments.view import Clock, line
+
+
+@pytest.mark.parametrize("worlds", [5, 6, 9, 20, 100])
+def test_the_interval_of_a_median_holds_it_as_often_as_promised(worlds: int) -> None:
+    """Counted over samples of a law whose median is known."""
+    draws = np.random.default_rng(worlds).exponential(size=(4000, worlds))
+    intervals = [_interval(sample) or (np.nan, np.nan) for sample in draws]
+    held = [low <= np.log(2) <= high for low, high in intervals]
+    assert np.mean(held) > 0.93
+
+
+def test_few_worlds_have_no_interval() -> None:
+    assert _interval(np.arange(4.0)) is None
+    assert _interval(np.arange(5.0)) == (0.0, 4.0)
+
+
+def test_the_bounds_of_the_interval_are_equally_far_from_both_ends() -> None:
+    """Of 20, 50 and 100 worlds, n / 2 - 0.98 sqrt(n) = 5.6, 18.1 and 40.2 lie outside."""
+    for worlds, outside in ((20, 5), (50, 18), (100, 40)):
+        lives = np.random.default_rng(worlds).permutation(worlds).astype(float)
+        assert _interval(lives) == (outside, worlds - 1 - outside)
 
 
 def test_each_arm_has_the_worlds_of_its_own_jobs() -> None:
@@ -39,11 +61,11 @@ def test_each_arm_has_the_worlds_of_its_own_jobs() -> None:
     found = status(plan, entries, ("one", "two", "none"))
     assert found.jobs == {"done": 2, "running": 1, "failed": 1, "waiting": 1}
     assert found.arms == (
-        ArmStatus("one", 4, 3, 1, 70.0),
-        ArmStatus("two", 7, 6, 6, 2.5),
-        ArmStatus("none", 2, 0, 0, None),
+        ArmStatus("one", 4, 3, 1, 70.0, None),
+        ArmStatus("two", 7, 6, 6, 2.5, (0.0, 4.0)),
+        ArmStatus("none", 2, 0, 0, None, None),
     )
-    assert status(plan, entries[1:2], ["two"]).arms == (ArmStatus("two", 7, 1, 1, 3.0),)
+    assert status(plan, entries[1:2], ["two"]).arms == (ArmStatus("two", 7, 1, 1, 3.0, None),)
     assert [entry.job for entry in found.running] == [1]
     assert [(entry.job, entry.error) for entry in found.failed] == [(3, "full")]
 

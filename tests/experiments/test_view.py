@@ -13,10 +13,10 @@ from primordia.experiments.status import ArmStatus, CampaignStatus
 from primordia.experiments.view import SHOWN, Clock, line, table
 
 ARMS = (
-    ArmStatus("mild", 1200, 1100, 1000, 54321.4),
-    ArmStatus("none", 3, 0, 0, None),
-    ArmStatus("few", 4, 2, 1, 7.0),
-    ArmStatus("brief", 2, 2, 0, 0.0),
+    ArmStatus("mild", 1200, 1100, 1000, 54321.4, (1234.6, 98765.4)),
+    ArmStatus("none", 3, 0, 0, None, None),
+    ArmStatus("few", 4, 2, 1, 7.0, None),
+    ArmStatus("brief", 2, 2, 0, 0.0, (0.0, 0.0)),
 )
 JOBS = {"done": 5, "running": 2, "failed": 1, "waiting": 1300}
 
@@ -64,11 +64,11 @@ def test_each_arm_and_each_running_job_is_a_row() -> None:
     )
     assert shown(CampaignStatus("Is it?", JOBS, ARMS, jobs, (failed(3),))) == [
         ["Is it?"],
-        ["arm", "worlds begun", "saturated", "ticks lived for each death"],
-        ["mild", "1,100 of 1,200", "1,000", "54,321"],
+        ["arm", "worlds begun", "saturated", "ticks lived for each death (95 %)"],
+        ["mild", "1,100 of 1,200", "1,000", "54,321 (1,235 to 98,765)"],
         ["none", "0 of 3", "0", "-"],
         ["few", "2 of 4", "1", "7"],
-        ["brief", "2 of 2", "0", "0"],
+        ["brief", "2 of 2", "0", "0 (0 to 0)"],
         ["job", "arm", "worlds", "tick", "births", "organism-ticks/s", "left"],
         ["7", "mild", "3", "3,000", "4,520", "12.3 M", "3 min 20 s"],
         ["8", "mild", "0", "0", "-"],

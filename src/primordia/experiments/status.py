@@ -7,9 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from primordia.comparison.resample import LEAST
 from primordia.experiments.ledger import Entry, WorldCounts
 from primordia.experiments.plan import Plan
 
+SIGMAS = 1.96
+"""Standard deviations from the mean within which 95 % of a normal distribution lies."""
 STATES = ("done", "running", "failed", "waiting")
 
 
@@ -24,6 +27,8 @@ class ArmStatus:
     saturated: int
     life: float | None
     """ticks lived for each death, median over the worlds that have begun; None if none has begun"""
+    life_interval: tuple[float, float] | None
+    """95 % interval of the median over worlds; None for fewer than 5 worlds"""
 
 
 @dataclass(frozen=True)
@@ -73,4 +78,13 @@ def _arm(name: str, count: int, worlds: list[WorldCounts]) -> ArmStatus:
     lives = np.array([world.organism_ticks / max(world.deaths, 1) for world in worlds])
     saturated = sum(world.saturated is not None for world in worlds)
     median = float(np.median(lives)) if len(lives) else None
-    return ArmStatus(name, count, len(worlds), saturated, median)
+    return ArmStatus(name, count, len(worlds), saturated, median, _interval(lives))
+
+
+def _interval(lives: np.ndarray) -> tuple[float, float] | None:
+    """Return the interval of the median by ranks: the normal approximation of Conover (1999, 3.2)."""
+    if len(lives) < LEAST:
+        return None
+    outside = max(int(len(lives) / 2 - SIGMAS / 2 * np.sqrt(len(lives))), 0)
+    ordered = np.sort(lives)
+    return float(ordered[outside]), float(ordered[len(lives) - 1 - outside])

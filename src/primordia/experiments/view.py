@@ -111,9 +111,12 @@ def _jobs(status: CampaignStatus) -> str:
 
 
 def _arms(arms: tuple[ArmStatus, ...]) -> Table:
-    made = _table("arm", "worlds begun", "saturated", "ticks lived for each death")
+    made = _table("arm", "worlds begun", "saturated", "ticks lived for each death (95 %)")
     for arm in arms:
         life = "-" if arm.life is None else f"{arm.life:,.0f}"
+        if arm.life_interval is not None:
+            low, high = arm.life_interval
+            life += f" ({low:,.0f} to {high:,.0f})"
         made.add_row(arm.name, f"{arm.begun:,} of {arm.worlds:,}", f"{arm.saturated:,}", life)
     return made
 
