@@ -19,7 +19,7 @@ def test_work_in_a_step_is_a_part_of_the_step() -> None:
             for _ in steps(range(2), "inner"):
                 tell("innermost", 0.5)
         tell("after", 1)
-    tell("nobody listens", 0.5)
+    tell("without a display", 0.5)
     halves = [[("outer", at), ("inner", at), ("innermost", at + 0.125), ("inner", at + 0.25),
                ("innermost", at + 0.375)] for at in (0, 0.5)]  # fmt: skip
     assert [*halves[0], *halves[1], ("after", 1)] == TOLD

@@ -33,7 +33,7 @@ def tell(work: str, share: float) -> None:
 def steps(items: Sequence[Item], work: str) -> Generator[Item, None, None]:
     """Yield items, and tell the display before each one the share of the items that are done.
 
-    Work that is told in a step counts as a part of this step.
+    If a step tells of work of its own, this work is a part of the step.
     """
     done, part = _part.get()
     try:

@@ -69,7 +69,8 @@ def words(seed: int) -> np.ndarray:
 
 @pytest.mark.parametrize(("topology", "rule"), ALL)
 def test_placing_all_at_once_equals_placing_one_by_one(topology: str, rule: str) -> None:
-    """Worlds are empty to full. In half of them priorities are often equal; in one nobody wants a child.
+    """Each world is filled to a random share. In every second world many priorities are equal. In world 5
+    no organism wants a child.
 
     There is room beside an organism if a cell in its reach would take a child.
     """

@@ -216,11 +216,8 @@ class Run:
         return report(self.opened(), Path(out) if out is not None else None)
 
     def watch(self, port: int | None = None, begun: Callable[[str], object] = print) -> None:
-        """Serve a live page about the run on this machine until Ctrl-C is pressed; see `watch.watch`."""
-        from primordia.report.server import (
-            PORT,  # Matplotlib takes a second to load
-            watch,
-        )
+        """Serve a live page about the run on this machine until Ctrl-C is pressed; see `server.watch`."""
+        from primordia.report.server import PORT, watch  # Matplotlib takes a second to load
 
         watch(self.opened, PORT if port is None else port, begun)
 

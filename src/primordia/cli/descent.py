@@ -1,4 +1,4 @@
-"""Commands on lines of descent: ancestors, lines."""
+"""Commands on lines of descent: ancestors, lineages."""
 
 import json
 from functools import partial
