@@ -29,7 +29,7 @@ def test_an_action_that_does_not_exist_is_an_error(action: Any) -> None:
 
 @pytest.mark.parametrize("action", [[0.1], [0.1, 0.2, 0.3], 0.1])
 def test_an_action_has_the_shape_of_the_space(action: Any) -> None:
-    needed("Reacher-forager")
+    pytest.importorskip("mujoco")
     env = LifeEnv("Reacher-forager")
     env.reset(seed=1)
     with pytest.raises(ValueError, match=r"give the shape \(1, 2\)"):
