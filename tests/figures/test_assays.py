@@ -183,7 +183,7 @@ def test_heredity_is_drawn_as_strips_of_the_worlds() -> None:
     fields = "selection", "transmission"
     check_strips(terms, {name: [getattr(each, name) for each in found[:3]] for name in fields})
     assert (sorted(levels(slopes)), levels(terms)) == ([0, 1], [0])
-    titles = "Slope of children's log life on parents' log life", "Share of mutants"
+    titles = "Slope of log life on the parent's", "Share of mutants"
     for axes, title in zip(
         (slopes, shares, terms), (*titles, "Change of mean log life"), strict=True
     ):

@@ -47,7 +47,7 @@ def heredity(found: list[Inherited]) -> Figure:
         "selection": [each.selection for each in found],
         "transmission": [each.transmission for each in found],
     }
-    strips(slopes, of_slopes, "Slope of children's log life on parents' log life")
+    strips(slopes, of_slopes, "Slope of log life on the parent's")
     slopes.axhline(1, color=style.FAINT, zorder=0)
     slopes.axhline(0, color=style.FAINT, zorder=0)
     strips(shares, of_mutants, "Share of mutants")
