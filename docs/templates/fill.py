@@ -246,6 +246,7 @@ def pages() -> dict[Path, str]:
         commands=reference.commands,
         settings=reference.settings,
         parts=reference.parts,
+        changes=reference.changes,
         seasons=reference.seasons,
     )
     filler.filters.update(number=number_text)

@@ -8,7 +8,7 @@ import json
 import re
 from collections.abc import Iterator
 from types import NoneType
-from typing import Any, Literal, get_args, get_origin
+from typing import Annotated, Any, Literal, get_args, get_origin
 
 import annotated_types as limits
 import click
@@ -17,12 +17,20 @@ from pydantic_core import PydanticUndefined
 from primordia.cli.commands import commands as program
 from primordia.cli.flags import HabitatCommand, SettingsCommand
 from primordia.config import CONTRACTS, Config
+from primordia.habitats.change import (
+    Change,
+    InvertSenses,
+    PermuteActions,
+    ReverseActions,
+    Weaken,
+)
 from primordia.law.seasons import Ratchet, Schedule
 from primordia.settings.base import SEASONAL
 from primordia.settings.fields import setting_fields
 from primordia.settings.tables import NONE, PARTS, replaced
 
 SEASONS = (Schedule, Ratchet)
+CHANGES = (ReverseActions, PermuteActions, Weaken, InvertSenses)
 NO_SETTINGS = ("task", "about", "fork.run", "fork.tick", *PARTS)
 """Fields of a run's settings that are no settings of their own."""
 WORDS = {int: "whole number", float: "number", str: "text", bool: "true or false"}
@@ -55,6 +63,18 @@ def seasons() -> str:
         f"### {kind.__name__}\n\n{_first_line(kind)}\n\n{_table(setting_fields(kind))}"
         for kind in SEASONS
     )
+
+
+def changes() -> str:
+    """Return a table of when a world changes within a life, and each kind of change with a table."""
+    when = setting_fields(Change)
+    tables = [_table(when)]
+    for kind in CHANGES:
+        fields = setting_fields(kind)
+        name = get_args(fields.pop("kind").annotation)[0]
+        own = {path: field for path, field in fields.items() if path not in when}
+        tables.append(f"`{name}`: {_first_line(kind)}" + (f"\n\n{_table(own)}" if own else ""))
+    return "\n\n".join(tables)
 
 
 def _all(command: click.Command, path: str) -> Iterator[tuple[click.Command, str]]:
@@ -125,7 +145,7 @@ def _kind(annotation: Any) -> str:
         return ", ".join(f"`{_value(each)}`" for each in inner)
     if origin is tuple:
         return f"list: {_kind(inner[0])}"
-    if NoneType in inner:
+    if NoneType in inner or origin is Annotated:
         return _kind(inner[0])
     return "table"
 

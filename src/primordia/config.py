@@ -18,6 +18,8 @@ from primordia.brains.contract import Brain
 from primordia.brains.layout import Layout
 from primordia.errors import InputError
 from primordia.habitats import contract as habitats
+from primordia.habitats.change import changes_of
+from primordia.habitats.changing import changing
 from primordia.habitats.checks import check_arrays, check_properties
 from primordia.habitats.contract import AnyHabitat, Continuous, JaxHabitat
 from primordia.law.heredity import Heredity
@@ -47,6 +49,8 @@ from primordia.settings.tables import (
 )
 from primordia.settings.values import check_values
 
+CHANGE = "change"
+"""The setting of a habitat, of any kind, that lists what changes within a life."""
 CONTRACTS: dict[str, Any] = {"habitat": habitats, "brain": brains, "mutation": mutations}
 """Name of a replaceable part's table -> the module with the contract of that part."""
 
@@ -133,9 +137,12 @@ class Config(Settings):
         table = self.habitat
         for original, copy in self._kept.items():
             table = replaced(table, original, copy)
-        habitat = make("habitat", table, habitats.find)
+        own = {name: value for name, value in table.items() if name != CHANGE}
+        habitat = make("habitat", own, habitats.find)
         check_properties(habitat)
-        return habitat
+        if CHANGE not in table:
+            return habitat
+        return changing(habitat, changes_of(table[CHANGE], habitat))
 
     def build_brain(self) -> Brain:
         """Return the brain of the run's organisms."""

@@ -10,7 +10,7 @@ import pytest
 import primordia
 from primordia.assays import ablate as module
 from primordia.assays.ablate import Ablation, _losses, ablate
-from primordia.assays.subjects import Subjects, of_run
+from primordia.assays.subjects import Subjects, of_run, of_task
 from primordia.organism.playing.games import Players
 from primordia.organism.playing.seats import Frozen
 from primordia.runs import loop
@@ -56,7 +56,7 @@ def test_no_loss_takes_more_than_it_says(subjects: Subjects) -> None:
     """Each block of weights is lost alone, and a loss of senses or memory leaves all weights."""
     layout, whole = subjects.law.heredity.layout, subjects.players.genomes
     for loss in _losses(subjects, each_sense=True):
-        left, before = layout.split(loss.genomes), layout.split(whole)
+        left, before = layout.split(loss.players.genomes), layout.split(whole)
         lost = {name for name in layout.names if (left[name] != before[name]).any()}
         assert lost == {name for name in layout.names if loss.name == f"{name} weights"}
         assert not any(left[name].any() for name in lost)
@@ -123,9 +123,32 @@ def test_each_ablated_life_is_compared_with_the_organisms_intact_life(
     ]
 
 
+def founders(folder: Path, brain: dict[str, Any]) -> Subjects:
+    """Return 40 founders of CartPole with these brains."""
+    file = folder / f"{brain['kind']}.toml"
+    file.write_text(config(brain=brain).to_toml())
+    return of_task(str(file), range(40))
+
+
+def test_without_plasticity_a_brain_has_its_inherited_weights_for_life(tmp_path: Path) -> None:
+    """It is then a feed-forward brain with the same weights for senses and outputs."""
+    plastic = founders(tmp_path, {"kind": "plastic", "hidden": 3, "gain": 1.0})
+    weights = plastic.law.heredity.layout.split(plastic.players.genomes)
+    simple = founders(tmp_path, {"kind": "feed-forward", "hidden": 3})
+    own = simple.law.heredity.layout.join({name: weights[name] for name in ("input", "output")})
+    alike = simple._replace(players=simple.players._replace(genomes=own))
+    found = {"plasticity": ablate(plastic, games=1, ticks=60), "": ablate(alike, games=1, ticks=60)}
+    lifespans = [each.lifespan for each in found["plasticity"] if each.without == "plasticity"]
+    assert lifespans == [each.intact for each in found[""] if each.without == "senses"]
+    assert lifespans != [each.intact for each in found["plasticity"] if each.without == "senses"]
+    assert "plasticity" not in {each.without for each in found[""]}
+
+
 def test_a_brain_without_memory_loses_none(subjects: Subjects) -> None:
-    law = SimpleNamespace(senses=4, memory=0, heredity=subjects.law.heredity)
-    players: Any = SimpleNamespace(genomes=subjects.players.genomes, law=law)
+    law: Any = SimpleNamespace(
+        senses=4, memory=0, heredity=subjects.law.heredity, brain=subjects.law.brain
+    )
+    players = subjects.players._replace(law=law)
     names = [each.name for each in _losses(subjects._replace(players=players), True)]
     blocks = [f"{name} weights" for name in subjects.law.heredity.layout.names]
     assert names == ["senses", *blocks, "sense 0", "sense 1", "sense 2", "sense 3"]

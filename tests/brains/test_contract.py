@@ -28,6 +28,15 @@ TABLES: dict[str, dict[str, Any]] = {
     "gated, biases": {"kind": "gated", "hidden": 7, "biases": True},
     "linear": {"kind": "linear"},
     "linear, biases": {"kind": "linear", "biases": True},
+    "plastic": {"kind": "plastic", "hidden": 6, "gain": 0.5, "modulator_gain": 0.5},
+    "plastic, few neurons, one rule": {
+        "kind": "plastic",
+        "hidden": 2,
+        "coefficients": "layer",
+        "activity": "graded",
+        "gain": 0.5,
+        "modulator_gain": 0.5,
+    },
     "not ours": {"kind": "tests.toys:Sliding"},
 }
 
@@ -40,7 +49,7 @@ def build(table: dict[str, Any]) -> Brain:
 BRAINS = {name: build(table) for name, table in TABLES.items()}
 SENSES, OUTPUTS, MOST, TICKS = 5, 3, 1024, 6
 
-QUICK = ("recurrent, biases", "feed-forward, biases", "gated, biases", "linear, biases")
+QUICK = ("recurrent, biases", "feed-forward, biases", "gated, biases", "linear, biases", "plastic")
 each_brain = pytest.mark.parametrize(
     "brain",
     [
@@ -124,6 +133,7 @@ def test_brains_are_found_by_name_and_by_class() -> None:
         "FeedForward",
         "Gated",
         "Linear",
+        "Plastic",
     ]
     assert find("tests.toys:Sliding") is Sliding
     assert build({}) == build({"kind": "recurrent", "hidden": 32, "biases": False})

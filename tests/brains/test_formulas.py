@@ -10,6 +10,7 @@ from primordia.brains.contract import Brain
 from primordia.brains.feedforward import FeedForward
 from primordia.brains.gated import Gated
 from primordia.brains.linear import Linear
+from primordia.brains.plastic import COEFFICIENTS, Plastic
 from primordia.brains.recurrent import Recurrent
 from tests.brains.test_layers import times
 
@@ -102,3 +103,45 @@ def test_a_closed_update_gate_keeps_a_memory_for_ever() -> None:
     for _ in range(20):
         after, _ = brain(genome, after, np.ones((N, SENSES), np.float32))
     np.testing.assert_array_equal(after, memory)
+
+
+def rows(block: np.ndarray, hidden: int) -> np.ndarray:
+    """Return the weights of an output layer as (N, hidden, outputs), in float64."""
+    inputs_first = block.shape[1] == hidden or block.shape[1] == 1
+    return (block if inputs_first else block.transpose(0, 2, 1)).astype(float)
+
+
+@pytest.mark.parametrize("hidden", [2, 12])
+@pytest.mark.parametrize("coefficients", ["connection", "layer"])
+@pytest.mark.parametrize("activity", ["winner", "graded"])
+def test_the_plastic_brain_follows_its_formula(
+    hidden: int, coefficients: Any, activity: Any
+) -> None:
+    """All fast weights are 0 at birth, and some reach the bound."""
+    brain = Plastic(
+        hidden=hidden, coefficients=coefficients, activity=activity, decay=0.3, bound=2.0, gain=1.5
+    )
+    g, senses, memories, outputs = thought(brain, ticks=6)
+    slow = rows(g["output"], hidden)
+    a, b, c, d, rate = (rows(g[name], hidden) for name in COEFFICIENTS)
+    h, p, x = np.zeros((N, hidden)), np.zeros((N, OUTPUTS)), np.zeros((N, SENSES))
+    fast = np.zeros((N, hidden, OUTPUTS))
+    for now, memory, output in zip(senses, memories, outputs, strict=True):
+        m = np.tanh(20 * times(g["modulator"], now - x))[:, None]
+        pre, post = h[:, :, None], p[:, None]
+        change = m * (1 + np.tanh(rate)) * (a * pre * post + b * pre + c * post + d)
+        fast = np.clip(0.7 * fast + change, -2, 2)
+        x, h = now, np.tanh(1.5 * times(g["input"], now))
+        y = np.einsum("nha,nh->na", slow + fast, h)
+        np.testing.assert_allclose(output, y, atol=1e-3)
+        p = np.tanh(y) if activity == "graded" else np.where(y == y.max(axis=1)[:, None], 1, -1)
+        found = brain.fast_weights(memory, SENSES, OUTPUTS)
+        np.testing.assert_allclose(found, fast, atol=1e-3)
+    assert (np.abs(fast) == 2).mean() > 0.05
+
+
+def test_a_plastic_brain_with_a_bound_of_0_does_not_learn() -> None:
+    g, senses, _, outputs = thought(Plastic(hidden=HIDDEN, bound=0.0, gain=1.0))
+    for x, output in zip(senses, outputs, strict=True):
+        hidden = np.tanh(times(g["input"], x))
+        np.testing.assert_allclose(output, times(g["output"], hidden), atol=5e-4)

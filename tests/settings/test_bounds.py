@@ -113,6 +113,7 @@ def test_a_season_of_metabolism_needs_a_metabolism() -> None:
 
 @pytest.mark.parametrize("kind", BRAINS)
 def test_the_defaults_of_a_part_are_added_and_its_own_settings_kept(kind: str) -> None:
-    made = load("CartPole-survival", {"brain": {"kind": kind, "biases": True}})
-    assert (made.brain["kind"], made.brain["biases"]) == (kind, True)
+    name, value = ("decay", 0.5) if kind == "plastic" else ("biases", True)
+    made = load("CartPole-survival", {"brain": {"kind": kind, name: value}})
+    assert (made.brain["kind"], made.brain[name]) == (kind, value)
     assert made.mutation["kind"] == "gaussian"

@@ -1,19 +1,19 @@
-"""Ablation: an organism plays its games again without senses, memory, or a block of its weights."""
+"""Ablation: an organism plays its games again without senses, memory, learning, or a block of weights."""
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from primordia.assays.subjects import GAMES, TICKS, Subjects
-from primordia.organism.playing.games import lifespans_in_games
+from primordia.organism.playing.games import Players, lifespans_in_games
 from primordia.organism.playing.seats import Frozen
 
 
 @dataclass(frozen=True)
 class Ablation:
-    """An organism's life without a sense, its memory, or a block of weights."""
+    """An organism's life without a sense, its memory, its learning, or a block of weights."""
 
     without: str
     organism: int
@@ -38,17 +38,16 @@ class _Loss(NamedTuple):
 
     name: str
     frozen: Frozen
-    genomes: np.ndarray
-    """float32 (K, P)"""
+    players: Players
 
 
 def ablate(
     subjects: Subjects, each_sense: bool = False, games: int = GAMES, ticks: int = TICKS
 ) -> list[Ablation]:
-    """Let each subject live again: without senses, without memory, then without each block.
+    """Let each subject live again: without senses, memory and plasticity, then without each block.
 
     Ablated senses keep their values from the start of each game. An ablated memory is zero in each
-    tick. Ablated weights are zero.
+    tick. A brain without plasticity has its inherited weights for life. Ablated weights are zero.
 
     Args:
         subjects: the organisms.
@@ -60,8 +59,7 @@ def ablate(
     intact = lifespans_in_games(subjects.players, number, ticks).mean(axis=1)
     found = []
     for loss in _losses(subjects, each_sense):
-        players = subjects.players._replace(genomes=loss.genomes)
-        spans = lifespans_in_games(players, number, ticks, loss.frozen).mean(axis=1)
+        spans = lifespans_in_games(loss.players, number, ticks, loss.frozen).mean(axis=1)
         columns = (subjects.organism, subjects.world, intact, spans)
         rows = zip(*(column.tolist() for column in columns), strict=True)
         found += [Ablation(loss.name, *row) for row in rows]
@@ -69,16 +67,18 @@ def ablate(
 
 
 def _losses(subjects: Subjects, each_sense: bool) -> Iterator[_Loss]:
-    genomes, law = subjects.players.genomes, subjects.law
-    count, layout = len(genomes), law.heredity.layout
+    players, law = subjects.players, subjects.law
+    count, layout = len(players.genomes), law.heredity.layout
     nothing = Frozen(np.zeros((count, law.senses), bool), np.zeros((count, 1), bool))
-    yield _Loss("senses", nothing._replace(senses=~nothing.senses), genomes)
+    yield _Loss("senses", nothing._replace(senses=~nothing.senses), players)
     if law.memory:
-        yield _Loss("memory", nothing._replace(memory=~nothing.memory), genomes)
+        yield _Loss("memory", nothing._replace(memory=~nothing.memory), players)
+    if (innate := law.brain.innate()) is not None:
+        yield _Loss("plasticity", nothing, players._replace(law=replace(law, brain=innate)))
     for block in layout.names:
-        kept = layout.split(genomes)
+        kept = layout.split(players.genomes)
         kept[block] = np.zeros_like(kept[block])
-        yield _Loss(f"{block} weights", nothing, layout.join(kept))
+        yield _Loss(f"{block} weights", nothing, players._replace(genomes=layout.join(kept)))
     for sense in range(law.senses if each_sense else 0):
         senses = np.tile(np.arange(law.senses) == sense, (count, 1))
-        yield _Loss(f"sense {sense}", nothing._replace(senses=senses), genomes)
+        yield _Loss(f"sense {sense}", nothing._replace(senses=senses), players)

@@ -24,6 +24,7 @@ KNOWN = {
     "feed-forward": "primordia.brains.feedforward:FeedForward",
     "gated": "primordia.brains.gated:Gated",
     "linear": "primordia.brains.linear:Linear",
+    "plastic": "primordia.brains.plastic:Plastic",
 }
 
 
@@ -46,6 +47,10 @@ class Brain(Settings, ABC):
     def memory(self, senses: int, outputs: int) -> int:
         """Return M, the count of numbers in an organism's memory; all are zero at birth."""
         return 0
+
+    def innate(self) -> "Brain | None":
+        """Return the brain without learning within a life, for genomes of this one; None if the same."""
+        return None
 
     @abstractmethod
     def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:

@@ -103,7 +103,7 @@ def effects(
 
 
 @click.option("--each-sense", is_flag=True, help="Also freeze each sense alone.")
-@assay_of_lives("Measure how a life depends on senses, memory and weights.")
+@assay_of_lives("Measure how a life depends on senses, memory, learning and weights.")
 def ablate(
     habitat: dict[str, Any],
     /,
@@ -114,8 +114,8 @@ def ablate(
     as_json: bool,
     **chosen: Any,
 ) -> None:
-    """Let organisms live again with one part switched off: senses, memory, or a block of
-    weights.
+    """Let organisms live again with one part switched off: senses, memory, plasticity (of
+    brains that learn), or a block of weights.
 
     RUN is a run, a genome file or a task. Without an ID, these organisms are the champions of a
     run's worlds, all genomes of a file, or the 16 longest-lived of 512 founders of a task. Any

@@ -1,0 +1,239 @@
+"""Habitats that change within a life: a wrapper around any habitat; see `change`."""
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array, lax
+
+from primordia.compiled import shared
+from primordia.habitats.bodies import select_bodies
+from primordia.habitats.change import Kind, word_of
+from primordia.habitats.contract import (
+    Ability,
+    Action,
+    AnyHabitat,
+    Bodies,
+    HostHabitat,
+    JaxHabitat,
+    Outcome,
+)
+from primordia.random.wide import Wide
+
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+WORDS = 2
+"""Random words of a birth from which the changes of a body follow: the last ones."""
+COURSE = "course"
+"""Beginning of the names of a course's arrays in a checkpoint."""
+
+
+class Course(NamedTuple):
+    """The changes of N bodies so far; C changes in the order of the settings."""
+
+    key: Wide
+    """key of a body's own draws, (N,)"""
+    age: Array
+    """ticks since birth, int32 (N,)"""
+    period: Array
+    """int32 (N, C), 0 for a change without a period"""
+    times: Array
+    """how often each change has come, int32 (N, C)"""
+    state: tuple[Array, ...]
+    """state of each change, (N, ...); see `Change.first`"""
+
+
+class Changed(NamedTuple):
+    """Bodies of a habitat in JAX that changes within a life."""
+
+    inner: Bodies
+    course: Course
+
+
+def begin(changes: tuple[Kind, ...], kind: Action, words: Array) -> Course:
+    """Return the courses of newborn bodies, from the words of their births, uint32 (N, words)."""
+    key, age = Wide(words[:, -2], words[:, -1]), jnp.zeros(len(words), jnp.int32)
+    periods = [change.period(word_of(key, age, 2 * i)) for i, change in enumerate(changes)]
+    counts = jnp.zeros((len(words), len(changes)), jnp.int32)
+    states = tuple(change.first(kind, len(words)) for change in changes)
+    return Course(key, age, jnp.stack(periods, axis=1), counts, states)
+
+
+def advance(changes: tuple[Kind, ...], course: Course) -> Course:
+    """Return the courses one tick later."""
+    key, age = course.key, course.age + 1
+    counts, states = [], []
+    for i, (change, state) in enumerate(zip(changes, course.state, strict=True)):
+        comes = change.comes(age, course.period[:, i], word_of(key, age, 2 * i))
+        after = lax.cond(  # random draws are made in ticks with a change only
+            comes.any(), lambda s, n=2 * i + 1, c=change: c.next(s, key, age, n), lambda s: s, state
+        )
+        counts.append(course.times[:, i] + comes)
+        states.append(select_bodies(comes, after, state))
+    return course._replace(age=age, times=jnp.stack(counts, axis=1), state=tuple(states))
+
+
+def act(changes: tuple[Kind, ...], kind: Action, course: Course, action: Array) -> Array:
+    """Return what bodies do if their organisms choose these actions."""
+    for change, state in zip(changes, course.state, strict=True):
+        action = change.act(kind, state, action)
+    return action
+
+
+def sense(changes: tuple[Kind, ...], course: Course, senses: Array) -> Array:
+    """Return what organisms perceive of these senses, float32 (N, S)."""
+    for change, state in zip(changes, course.state, strict=True):
+        senses = change.sense(state, senses)
+    return senses
+
+
+class _Wrapper:
+    """What a habitat that changes has in common with the habitat that it wraps."""
+
+    def __init__(self, inner: AnyHabitat, changes: tuple[Kind, ...]) -> None:
+        self.inner, self.changes = inner, changes
+        self.senses_size, self.action = inner.senses_size, inner.action
+        self.words = inner.words + WORDS
+        self.versions, self.rate, self.episode = inner.versions, inner.rate, inner.episode
+        self.tallies, self.exact = inner.tallies, inner.exact
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Wrapper) and self._key == other._key
+
+    def __hash__(self) -> int:
+        return hash(self._key)
+
+    @property
+    def _key(self) -> tuple:
+        return self.inner, self.changes
+
+    def lacks(self, ability: Ability) -> list[str]:
+        """Return the methods that the wrapped habitat lacks for an ability."""
+        return self.inner.lacks(ability)
+
+    def original(self) -> AnyHabitat | None:
+        """Return the wrapped habitat as the standard benchmark scores it, without changes."""
+        return self.inner.original()
+
+
+class ChangingInJax(_Wrapper, JaxHabitat):
+    """A habitat in JAX whose world changes within a life."""
+
+    inner: JaxHabitat
+
+    def reset(self, words: Array) -> Changed:
+        """Return fresh bodies; see `JaxHabitat.reset`."""
+        course = begin(self.changes, self.action, words)
+        return Changed(self.inner.reset(words[:, :-WORDS]), course)
+
+    def sense(self, bodies: Changed) -> Array:
+        """Return the senses; see `JaxHabitat.sense`."""
+        return sense(self.changes, bodies.course, self.inner.sense(bodies.inner))
+
+    def step(self, bodies: Changed, action: Array) -> tuple[Changed, Outcome]:
+        """Step all bodies by one tick; see `JaxHabitat.step`."""
+        done = act(self.changes, self.action, bodies.course, action)
+        inner, outcome = self.inner.step(bodies.inner, done)
+        return Changed(inner, advance(self.changes, bodies.course)), outcome
+
+    def picture(self, body: Changed, action: np.ndarray) -> "Image":
+        """Return the picture of the wrapped habitat."""
+        return self.inner.picture(body.inner, action)
+
+    def caption(self, body: Changed, action: np.ndarray) -> str:
+        """Return the caption of the wrapped habitat, and the number of changes so far."""
+        return _with_changes(self.inner.caption(body.inner, action), body.course)
+
+
+class ChangingOnHost(_Wrapper, HostHabitat):
+    """A habitat on the host whose world changes within a life."""
+
+    inner: HostHabitat
+
+    def open(self, cells: int, watched: bool = False) -> None:
+        """Allocate a body for each of N cells; see `HostHabitat.open`."""
+        self.inner.open(cells, watched)
+        self._begin, self._act = (shared(each, self.changes, self.action) for each in (begin, act))
+        self._sense, self._after = (shared(each, self.changes) for each in (sense, _after))
+        self._course = self._begin(np.zeros((cells, WORDS), np.uint32))
+
+    def reset(self, cells: np.ndarray, words: np.ndarray) -> np.ndarray:
+        """Make fresh bodies in cells (K,); see `HostHabitat.reset`."""
+        senses = self.inner.reset(cells, words[:, :-WORDS])
+        everywhere = np.zeros((len(self._course.age), WORDS), np.uint32)
+        everywhere[cells] = words[:, -WORDS:]  # one shape is compiled once
+        newborn = jnp.isin(jnp.arange(len(everywhere)), cells)
+        self._course = select_bodies(newborn, self._begin(everywhere), self._course)
+        return senses  # nothing has changed yet
+
+    def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
+        """Step the bodies of living cells; see `HostHabitat.step`."""
+        done = np.asarray(self._act(self._course, action))
+        senses, outcome = self.inner.step(done, alive)
+        self._course, senses = self._after(self._course, alive, senses)
+        return np.array(senses), outcome
+
+    def close(self) -> None:
+        """Release what `open` allocated."""
+        self.inner.close()
+
+    def seen(self) -> Changed:
+        """Return the bodies of the wrapped habitat, and their courses."""
+        return Changed(self.inner.seen(), jax.tree.map(np.asarray, self._course))
+
+    def tally(self) -> np.ndarray:
+        """Return the counts of the wrapped habitat."""
+        return self.inner.tally()
+
+    def message(self, cell: int) -> str:
+        """Return why the body in a cell failed."""
+        return self.inner.message(cell)
+
+    def save(self) -> dict[str, np.ndarray]:
+        """Return the arrays of the wrapped habitat, and those of the courses."""
+        leaves = enumerate(jax.tree.leaves(self._course))
+        return self.inner.save() | {f"{COURSE}{i}": np.asarray(leaf) for i, leaf in leaves}
+
+    def load(self, arrays: dict[str, np.ndarray]) -> None:
+        """Restore what `save` returned."""
+        own = jax.tree.leaves(self._course)
+        leaves = [jnp.asarray(arrays[f"{COURSE}{i}"]) for i in range(len(own))]
+        self._course = jax.tree.unflatten(jax.tree.structure(self._course), leaves)
+        self.inner.load(
+            {name: each for name, each in arrays.items() if not name.startswith(COURSE)}
+        )
+
+    def picture(self, body: Changed, action: np.ndarray) -> "Image":
+        """Return the picture of the wrapped habitat."""
+        return self.inner.picture(body.inner, action)
+
+    def caption(self, body: Changed, action: np.ndarray) -> str:
+        """Return the caption of the wrapped habitat, and the number of changes so far."""
+        return _with_changes(self.inner.caption(body.inner, action), body.course)
+
+
+def _after(
+    changes: tuple[Kind, ...], course: Course, alive: Array, senses: Array
+) -> tuple[Course, Array]:
+    """Return the courses of living bodies one tick later, and what organisms perceive of the senses."""
+    course = select_bodies(alive, advance(changes, course), course)
+    return course, sense(changes, course, senses)
+
+
+def _with_changes(caption: str, course: Course) -> str:
+    count = int(np.sum(course.times))
+    return f"{caption}, {count} change{'' if count == 1 else 's'}"
+
+
+def changing(habitat: AnyHabitat, changes: tuple[Kind, ...]) -> AnyHabitat:
+    """Return the habitat with changes within each life."""
+    if isinstance(habitat, JaxHabitat):
+        return ChangingInJax(habitat, changes)
+    return ChangingOnHost(habitat, changes)
+
+
+def unchanging(habitat: AnyHabitat) -> AnyHabitat:
+    """Return the habitat without its changes."""
+    return habitat.inner if isinstance(habitat, _Wrapper) else habitat
