@@ -30,7 +30,7 @@ UNKEPT = re.compile(r"no\s+table\s+is\s+kept|kept\s+nowhere\s+else")
 """What a page says of figures that were written down once, when runs were not kept yet."""
 KNOWN = {
     **dict.fromkeys(("65,536", "4.32"), "the table of Gaussian quantiles"),
-    **dict.fromkeys(("102,000", "300", "225"), "figures of the paper"),
+    **dict.fromkeys(("102,000", "225"), "figures of the paper"),
     "2.4": "CartPole's track, in the published code",
     "65,210": "the tick at which the clock of Pong's console comes round",
     "7,141": "the ticks of a round of Boxing",
@@ -38,9 +38,7 @@ KNOWN = {
     "3,000": "the length of games from any start, in starts.py",
     "512": "founders of a trial, as the assay draws them",
     "1.7": "0.3 times the root of 32, a spectral radius",
-    **dict.fromkeys(
-        ("0.004", "0.33"), "a mutation's scale over that of founders, both set by tasks"
-    ),
+    "0.004": "a mutation's scale over that of founders, both set by tasks",
     "8,000": "the length at which games of the first seeds were cut, and lives of tanks in words",
     **dict.fromkeys(
         ("1,800", "3,589", "12,139", "787"), "reinforcement learning with robots, in tasks.md"

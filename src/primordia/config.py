@@ -22,6 +22,7 @@ from primordia.habitats.change import changes_of
 from primordia.habitats.changing import changing
 from primordia.habitats.checks import check_arrays, check_properties
 from primordia.habitats.contract import AnyHabitat, Continuous, JaxHabitat
+from primordia.law.efference import Efferent
 from primordia.law.heredity import Heredity
 from primordia.law.law import Law
 from primordia.law.metabolism import Metabolism
@@ -49,8 +50,6 @@ from primordia.settings.tables import (
 )
 from primordia.settings.values import check_values
 
-CHANGE = "change"
-"""The setting of a habitat, of any kind, that lists what changes within a life."""
 CONTRACTS: dict[str, Any] = {"habitat": habitats, "brain": brains, "mutation": mutations}
 """Name of a replaceable part's table -> the module with the contract of that part."""
 
@@ -137,24 +136,24 @@ class Config(Settings):
         table = self.habitat
         for original, copy in self._kept.items():
             table = replaced(table, original, copy)
-        own = {name: value for name, value in table.items() if name != CHANGE}
+        own = dict(table)
+        changes = own.pop("change", None)
         habitat = make("habitat", own, habitats.find)
         check_properties(habitat)
-        if CHANGE not in table:
-            return habitat
-        return changing(habitat, changes_of(table[CHANGE], habitat))
+        return habitat if changes is None else changing(habitat, changes_of(changes, habitat))
 
-    def build_brain(self) -> Brain:
-        """Return the brain of the run's organisms."""
-        return make("brain", self.brain, brains.find)
+    def build_brain(self, habitat: AnyHabitat) -> Brain:
+        """Return the brain of the organisms that live in the habitat."""
+        brain = make("brain", self.brain, brains.find)
+        return Efferent(inner=brain, action=habitat.action) if brain.efference else brain
 
     def build_layout(self, habitat: AnyHabitat) -> Layout:
         """Return the layout of the genomes of organisms that live in the habitat."""
-        return self.build_brain().layout(habitat.senses_size, habitat.action.size)
+        return self.build_brain(habitat).layout(habitat.senses_size, habitat.action.size)
 
     def build_law(self, habitat: AnyHabitat) -> Law:
         """Return the law of the run's worlds."""
-        brain, heredity = self.build_brain(), self.build_heredity(self.build_layout(habitat))
+        brain, heredity = self.build_brain(habitat), self.build_heredity(self.build_layout(habitat))
         return Law(
             worlds=self.seeds,
             cells=self.cells,
@@ -328,7 +327,7 @@ def _check_own_code(config: Config, habitat: AnyHabitat) -> None:
     if "habitat" in own and isinstance(habitat, JaxHabitat):
         check_arrays(habitat)
     if "brain" in own:
-        check_brain(config.build_brain(), habitat.senses_size, habitat.action.size)
+        check_brain(config.build_brain(habitat), habitat.senses_size, habitat.action.size)
     if "mutation" in own:
         mutation = make("mutation", config.mutation, mutations.find)
         check_mutation(mutation, config.build_layout(habitat))

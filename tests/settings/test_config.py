@@ -130,7 +130,8 @@ def test_flags_override_the_file_and_the_file_overrides_the_task(
     assert (config.mutation["scale"], config.mutation["probability"]) == (0.125, 0.25), "flag, file"
     assert (config.stop.ticks, config.stop.until) == (2, None), "flags"
     assert config.placement.rule == "empty-only"
-    assert config.brain == {"kind": "recurrent", "hidden": 4, "biases": True}, "file, flag"
+    expected = {"kind": "recurrent", "efference": False, "hidden": 4, "biases": True}
+    assert config.brain == expected, "file, flag"
     assert config.mutation["blocks"]["input_bias"]["scale"] == 0.5, "a flag of a block"
     assert config.mutation["founder_scale"] == tasks()[TASK]["mutation"]["founder_scale"], "task"
     assert config.seasons == (Schedule(kind="schedule", setting="hazard", at=9, value=0.0),)

@@ -19,8 +19,9 @@ TASK = "CartPole-survival"
 
 
 def test_a_brain_has_its_own_settings_with_defaults_filled_in() -> None:
-    assert config(MEADOW).brain == {"kind": "recurrent", "hidden": 32, "biases": False}
-    assert config(MEADOW, brain={"kind": "linear"}).brain == {"kind": "linear", "biases": False}
+    common = {"efference": False, "biases": False}
+    assert config(MEADOW).brain == {"kind": "recurrent", "hidden": 32, **common}
+    assert config(MEADOW, brain={"kind": "linear"}).brain == {"kind": "linear", **common}
     other = config(MEADOW, brain={"kind": "tests.toys:Sliding", "width": 1})
     assert other.brain == {"kind": "tests.toys:Sliding", "width": 1, "channels": 3}
     assert tomllib.loads(other.to_toml())["brain"] == other.brain
@@ -62,7 +63,8 @@ def test_settings_of_an_older_version_are_read() -> None:
     """The older version had a kind and a number of neurons."""
     for kind in ("recurrent", "feed-forward"):
         old = {**MEADOW, "brain": {"kind": kind, "hidden": 5}}
-        assert validated(old, source="test").brain == {**old["brain"], "biases": False}
+        made = validated(old, source="test").brain
+        assert made == {**old["brain"], "efference": False, "biases": False}
 
 
 def test_settings_are_read_without_the_code_of_the_brain() -> None:
@@ -71,7 +73,8 @@ def test_settings_are_read_without_the_code_of_the_brain() -> None:
 
 
 def test_a_part_does_not_take_settings_of_the_part_that_it_replaces() -> None:
-    assert load(TASK, {"brain": {"kind": "linear"}}).brain == {"kind": "linear", "biases": False}
+    made = load(TASK, {"brain": {"kind": "linear"}}).brain
+    assert made == {"kind": "linear", "efference": False, "biases": False}
     base = {"brain": {"kind": "gated", "hidden": 4}, "motor": {"kind": "direct", "sd": 0.5}}
     assert merged(base, {"brain": {"kind": "gated", "biases": True}})["brain"] == {
         "kind": "gated",

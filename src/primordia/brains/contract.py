@@ -12,6 +12,7 @@ from abc import ABC, abstractmethod
 from typing import TypeAlias
 
 from jax import Array
+from pydantic import Field
 
 from primordia.brains.layout import Layout, Shape
 from primordia.settings import parts
@@ -34,6 +35,11 @@ class Brain(Settings, ABC):
     A brain is pure and treats each organism independently. It gives the same bits for every number
     of organisms and of threads; `layers.matvec` ensures that for sums.
     """
+
+    efference: bool = Field(
+        False,
+        description="true: the brain also perceives the senses and its own command of the last tick",
+    )
 
     @abstractmethod
     def blocks(self, senses: int, outputs: int) -> dict[str, Shape]:

@@ -1,0 +1,76 @@
+"""Brains with an efference copy perceive the last tick's senses and command beside this tick's senses."""
+
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from jax import Array
+
+from primordia.brains.contract import Brain
+from primordia.brains.linear import Linear
+from primordia.brains.plastic import Plastic
+from primordia.config import load
+from primordia.habitats.contract import Compound, Continuous, Discrete
+from primordia.law.efference import Efferent
+from primordia.testing import check_brain
+
+SENSES = 2
+PARTS = Compound((Discrete(3), Continuous(2)))
+
+
+class Witness(Brain):
+    """A brain that puts out its weights, and remembers all that it perceives."""
+
+    def blocks(self, senses: int, outputs: int) -> dict[str, tuple[int, ...]]:
+        return {"output": (outputs,)}
+
+    def memory(self, senses: int, outputs: int) -> int:
+        return senses
+
+    def __call__(self, genome: Any, memory: Array, senses: Array) -> tuple[Array, Array]:
+        return senses, genome["output"] + senses[:, :1]
+
+
+@pytest.mark.parametrize(
+    ("action", "outputs", "command"),
+    [
+        (Discrete(3), [0.5, 2.0, 2.0], [0, 1, 0]),
+        (Continuous(2), [0.5, -3.0], np.tanh([0.5, -3.0])),
+        (PARTS, [0.1, 0.2, 0.3, -1.0, 1.0], [0, 0, 1, *np.tanh([-1.0, 1.0])]),
+    ],
+)
+def test_the_last_senses_and_the_last_command_are_perceived(
+    action: Any, outputs: list[float], command: list[float]
+) -> None:
+    brain = Efferent(inner=Witness(), action=action)
+    size = action.size
+    assert brain.layout(SENSES, size).blocks == (("output", (size,)),)
+    genome = {"output": jnp.array([outputs], jnp.float32)}
+    memory = jnp.zeros((1, brain.memory(SENSES, size)))
+    first, second = np.array([[0.0, 7]], np.float32), np.array([[0.0, 9]], np.float32)
+    memory, output = brain(genome, memory, first)
+    np.testing.assert_array_equal(output, genome["output"])
+    np.testing.assert_array_equal(memory[0, : 2 * SENSES + size], [0, 7] + [0] * (SENSES + size))
+    memory, _ = brain(genome, memory, second)
+    perceived = [0, 9, 0, 7, *command]
+    np.testing.assert_allclose(memory[0, : 2 * SENSES + size], perceived, rtol=1e-6)
+
+
+@pytest.mark.parametrize("inner", [Linear(), Plastic(hidden=3)])
+def test_it_is_a_brain_like_any_other(inner: Brain) -> None:
+    check_brain(Efferent(inner=inner, action=PARTS), 3, PARTS.size)
+
+
+def test_without_plasticity_the_inner_brain_does_not_learn() -> None:
+    assert Efferent(inner=Linear(), action=PARTS).innate() is None
+    innate: Any = Efferent(inner=Plastic(), action=PARTS).innate()
+    assert innate.inner == Plastic(bound=0.0)
+
+
+def test_every_brain_has_the_setting() -> None:
+    tables = [{"kind": "linear", "efference": on} for on in (False, True)]
+    made = [load("CartPole-survival", {"brain": table}) for table in tables]
+    laws = [each.build_law(each.build_habitat()) for each in made]
+    assert [law.heredity.layout.length for law in laws] == [4 * 2, (4 + 4 + 2) * 2]
+    assert [law.memory for law in laws] == [0, 4 + 2]
