@@ -16,11 +16,12 @@ from primordia import testing
 from primordia.runs.archive import Archive
 from primordia.runs.digest import digests
 from primordia.settings import doors
-from tests.commands import begin, complains, here
+from tests.commands import begin, complains, flags, here
 from tests.strangers import forget
+from tests.worlds import HOSTED
 
 MORE = ["--ticks", "120", "--quiet"]
-SHORT = ["--quiet", "--cells", "6", "--habitat.workers", "0"]
+SHORT = ["--quiet", *flags(HOSTED), "--habitat.workers", "0"]
 POND = "gym:tests.ponds:Pond-v0"
 SWAMP = """
 import gymnasium
