@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 from contextlib import chdir, redirect_stderr, redirect_stdout, suppress
+from functools import partial
 from itertools import count
 from pathlib import Path
 from typing import Any
@@ -18,6 +19,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import primordia
+from primordia import cli, interrupts
+from primordia.cli import commands, streams
 from primordia.cli.commands import execute
 from primordia.cli.streams import Printable
 from primordia.errors import InputError
@@ -192,6 +195,18 @@ def test_closed_streams_are_opened(closed: str, tmp_path: Path) -> None:
     done = subprocess.run(shell, env=environment(), check=False)
     assert done.returncode == 0
     assert (tmp_path / "file").read_text() == "3 True True True\n"
+
+
+def test_a_command_first_opens_what_is_closed(monkeypatch: pytest.MonkeyPatch) -> None:
+    called: list[str] = []
+    for module, name in (
+        (cli, "open_streams"), (interrupts, "end_commands_at_once"), (streams, "prepare"),
+        (commands, "execute"),
+    ):  # fmt: skip
+        monkeypatch.setattr(module, name, partial(called.append, name))
+    with pytest.raises(SystemExit):
+        cli.main()
+    assert called == ["open_streams", "end_commands_at_once", "prepare", "execute"]
 
 
 @pytest.mark.slow
