@@ -137,6 +137,7 @@ def test_an_environment_in_jax_is_lived_in_by_its_name_alone(tmp_path: Path) -> 
     assert (tmp_path / "life.gif").stat().st_size > 1000
 
 
+@pytest.mark.slow
 def test_what_is_wrong_with_an_environment_in_jax_is_found(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -169,7 +170,8 @@ def test_check_names_faults_of_the_environment_and_breaches_of_the_contract(
             raise testing.ContractError(broken)
 
     env = "gymnax:tests.walks:Choice"
-    task = doors.task(env)._replace(facts=["a fact", "another"], faults=faults)
+    table = {"task": "Choice", "habitat": {"name": "gymnax", "env": "tests.walks:Choice"}}
+    task = doors.Task(table, ["a fact", "another"], faults)
     monkeypatch.setattr(doors, "task", lambda env: task)
     monkeypatch.setattr(testing, "check_habitat", check_habitat)
     done = here("check", env)

@@ -24,7 +24,8 @@ WORDS = np.random.default_rng(5).integers(2**32, size=(6, 2), dtype=np.uint32)
 
 
 @pytest.mark.parametrize(
-    "name", ["Breakout-MinAtar", pytest.param("Asterix-MinAtar", marks=pytest.mark.slow)]
+    "name",
+    ["Catch-bsuite", *(pytest.param(name, marks=pytest.mark.slow) for name in MINATAR[:2])],
 )
 def test_a_life_is_what_the_library_computes(name: str) -> None:
     habitat, (env, params) = Gymnax(env=name, food="reward"), gymnax.make(name)
@@ -97,7 +98,7 @@ def test_players_act_and_perceive_the_grid() -> None:
     ("name", "size"),
     [
         ("CartPole-v1", (600, 400)),
-        ("Breakout-MinAtar", (400, 400)),
+        pytest.param("Breakout-MinAtar", (400, 400), marks=pytest.mark.slow),
         ("Catch-bsuite", (200, 400)),
         pytest.param("Craftax-Classic-Symbolic-v1", (576, 576), marks=pytest.mark.slow),
     ],

@@ -211,9 +211,10 @@ def test_the_mutations_without_these_faults(mutation: Mutation) -> None:
         (Lazy(), "instead of 32 are born together"),
         (Deaf(), "the same children for all rates; read rates from `rates`"),
         (Random(), "when it is traced again, .*; draw only from `draws`"),
-        (
+        pytest.param(
             Liar(),
             "organism 0 although it is marked as a copy; return the parent's weights unchanged",
+            marks=pytest.mark.slow,
         ),
         (Cleaner(), "although it is marked as a copy"),
         (Timed(), "has the note 'tick', which cannot be a column of births; use a name other than"),
