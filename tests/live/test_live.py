@@ -158,6 +158,7 @@ def test_plain_lines_where_there_is_no_terminal(
 # A terminal, a process, and the signal of Ctrl-C.
 
 
+@pytest.mark.slow
 def test_a_terminal_shows_the_strip_and_control_c_saves(tmp_path: Path) -> None:
     """Standard input is a file here, so no keys are named."""
     with opened() as terminal:
