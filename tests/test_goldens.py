@@ -63,9 +63,7 @@ ALIKE = {f"{name}.toml" for name in (
 @pytest.mark.parametrize(
     "file",
     [
-        pytest.param(
-            file, marks=pytest.mark.slow if habitat == "gymnax" or file in ALIKE else ()
-        )
+        pytest.param(file, marks=pytest.mark.slow if habitat == "gymnax" or file in ALIKE else ())
         for file, habitat in HABITATS.items()
     ],
 )

@@ -30,7 +30,13 @@ TASK, SENSES = "Breakout-survival-forager", (72, 99, 101)
 STOP = {"ticks": 250, "until": "none"}
 SETTINGS: dict[str, Any] = {
     "cells": 6,
-    "habitat": {"sticky": 0.25, "noops": 30, "frame_skip": 3, "food": "ram[72] > 130", "workers": 0},
+    "habitat": {
+        "sticky": 0.25,
+        "noops": 30,
+        "frame_skip": 3,
+        "food": "ram[72] > 130",
+        "workers": 0,
+    },
     "metabolism": {"store": 25.0, "gain": 0.75},
     "replication": 0.3,
     "hazard": 0.01,

@@ -65,6 +65,7 @@ def test_a_task_is_made_from_lives_at_random() -> None:
     assert validated(table, source="test").build_habitat().env in table["about"]
 
 
+@pytest.mark.slow
 def test_what_is_known_of_an_environment_is_said() -> None:
     _, facts, faults = task("CartPole-v1")
     assert faults == []

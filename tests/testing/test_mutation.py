@@ -199,7 +199,9 @@ class Few(Steady):
         return super().founders(layout, draws)[:, 1:]
 
 
-@pytest.mark.parametrize("mutation", [Contracted(), Rateless()])
+@pytest.mark.parametrize(
+    "mutation", [Contracted(), pytest.param(Rateless(), marks=pytest.mark.slow)]
+)
 def test_the_mutations_without_these_faults(mutation: Mutation) -> None:
     check_mutation(mutation)
 
