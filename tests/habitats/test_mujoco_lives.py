@@ -21,8 +21,6 @@ from tests.worlds import HOSTED
 pytest.importorskip("mujoco")
 
 SMALL: dict[str, Any] = {"cells": 6, "seeds": 2, "genesis": "fill", "hazard": 0.003}
-MOVING = {"food": "0.2 * abs(com_forward)"}
-"""Food that is measured from the place of a body in the tick before."""
 BOX: dict[str, Any] = {
     "task": "box",
     **HOSTED,
@@ -40,7 +38,8 @@ BOX: dict[str, Any] = {
     "hazard": 0.01,
     "stop": {"ticks": 260, "until": "none"},
 }
-"""Boxes that slide along a line, in a law of other tests."""
+"""Boxes that slide along a line, in a law of other tests. Their food is measured from the place of a
+body in the tick before."""
 
 
 @pytest.fixture(scope="module")
@@ -51,31 +50,24 @@ def boxes(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return primordia.run(str(folder / "box.toml"), folder / "run").path
 
 
-@pytest.fixture(scope="module")
-def reachers(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    run = tmp_path_factory.mktemp("reachers") / "run"
-    stop = {"ticks": 260, "until": "none"}
-    return primordia.run("Reacher-forager-costly", run, **SMALL, habitat=MOVING, stop=stop).path
-
-
 def digests(run: primordia.Run) -> list[str]:
     return [world["digest"] for world in run.info()["worlds"]]
 
 
-@pytest.mark.slow
-def test_a_run_that_was_stopped_continues_exactly(reachers: Path, tmp_path: Path) -> None:
+def test_a_run_that_was_stopped_continues_exactly(boxes: Path, tmp_path: Path) -> None:
     """This holds also where food is measured from the body's place before the stop."""
     stop = {"ticks": 67, "until": "none"}
-    run = primordia.run(
-        "Reacher-forager-costly", tmp_path / "run", **SMALL, habitat=MOVING, stop=stop
-    )
+    run = primordia.run(str(boxes.parent / "box.toml"), tmp_path / "run", stop=stop)
+    assert run.info()["worlds"][0]["births"] > 6
     run.resume(ticks=260)
-    assert digests(run) == digests(primordia.load(reachers))
+    assert digests(run) == digests(primordia.load(boxes))
 
 
 @pytest.mark.slow
-def test_evaluations_are_cut_where_gymnasium_cuts(reachers: Path) -> None:
-    evaluation = primordia.load(reachers).oldest().evaluate(games=3, ticks=400)
+def test_evaluations_are_cut_where_gymnasium_cuts(tmp_path: Path) -> None:
+    stop = {"ticks": 260, "until": "none"}
+    run = primordia.run("Reacher-forager-costly", tmp_path / "run", **SMALL, stop=stop)
+    evaluation = run.oldest().evaluate(games=3, ticks=400)
     assert evaluation.whole is not None
     assert evaluation.whole.ticks.tolist() == [50] * 3
     assert (evaluation.games, evaluation.distinct) == (3, 3)
