@@ -8,7 +8,7 @@ import pytest
 
 from tests.worlds import MILL
 
-SETTINGS: dict[str, Any] = {**MILL, "brain": {"hidden": 4}, "stop": {"ticks": 60}}
+SETTINGS: dict[str, Any] = {**MILL, "brain": {"hidden": 4}, "seeds": 2, "stop": {"ticks": 60}}
 
 
 @pytest.fixture(scope="module", autouse=True)

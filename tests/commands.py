@@ -55,6 +55,16 @@ def here(*words: object) -> subprocess.CompletedProcess[str]:
     return subprocess.CompletedProcess(argv, status, out.read(), err.read())
 
 
+def flags(settings: dict[str, Any]) -> list[str]:
+    """Return settings, some of them in tables, as the words of a command."""
+    words = []
+    for name, value in settings.items():
+        table = value if isinstance(value, dict) else {"": value}
+        for key, each in table.items():
+            words += ["--" + ".".join(filter(None, (name, key))), str(each)]
+    return words
+
+
 def well_formed(*words: str) -> Config | None:
     """Read the words of a command as it does, and execute nothing.
 

@@ -50,18 +50,17 @@ print(sum("XLA" in name for name in names))
 """
 
 
-@pytest.mark.parametrize("number", [1, 3])
-def test_xla_starts_as_many_threads_as_there_are_cores(number: int) -> None:
+def test_xla_starts_as_many_threads_as_there_are_cores() -> None:
     if not Path("/proc/self/task").is_dir():
         pytest.skip("needs Linux")
     done = subprocess.run(
         [sys.executable, "-c", THREADS],
-        env={**environment(), "PRIMORDIA_CORES": str(number)},
+        env={**environment(), "PRIMORDIA_CORES": "3"},
         capture_output=True,
         text=True,
         check=True,
     )
-    assert int(done.stdout) == number
+    assert int(done.stdout) == 3
 
 
 @pytest.mark.parametrize("given", [None, "3"])

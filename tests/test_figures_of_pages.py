@@ -61,9 +61,13 @@ def _fill() -> Iterator[ModuleType]:
 
 @pytest.fixture(scope="module")
 def filled(fill: ModuleType) -> dict[Path, str]:
-    """Return the text that each page should have. The settings of each task are read once, for speed."""
+    """Return the text that each page should have.
+
+    For speed the settings of each task are read once, and functions of habitats are not traced.
+    """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(config, "load", cache(config.load))
+        patch.setattr(config, "check_arrays", lambda habitat: None)
         pages: dict[Path, str] = fill.pages()
     return pages
 
@@ -77,6 +81,7 @@ def numbers(values: Any) -> Iterator[float]:
         yield float(values)
 
 
+@cache
 def settings() -> set[float]:
     """Return the value of each setting of the tasks and experiments."""
     files = [path for part in ("experiments", "src") for path in (HERE / part).rglob("*.toml")]

@@ -52,17 +52,23 @@ def test_each_task_has_the_settings_with_which_it_was_played() -> None:
 
 
 HABITATS = {file: plays.settings_of(file)["habitat"]["name"] for file in plays.NAMES}
+ALIKE = {f"{name}.toml" for name in (
+    "battlezone_survival_forager", "boxing_survival_fight", "halfcheetah_forager_ratchet",
+    "humanoid_homeostasis", "pong_survival", "pong_survival_blind", "reacher_forager",
+    "walker_survival_forager_1ms",
+)}  # fmt: skip
+"""Tasks whose simulator and game another task has too."""
 
 
 @pytest.mark.parametrize(
     "file",
     [
-        pytest.param(file, marks=pytest.mark.slow if habitat == "gymnax" else ())
+        pytest.param(file, marks=pytest.mark.slow if habitat == "gymnax" or file in ALIKE else ())
         for file, habitat in HABITATS.items()
     ],
 )
 def test_each_task_is_played_as_it_was(file: str) -> None:
-    """Those of gymnax take long to compile."""
+    """Those of gymnax take long to compile, and one task of each game is enough for `make test`."""
     packages = {"atari": "ale_py", "mujoco": "mujoco", "gymnasium": "Box2D", "gymnax": "craftax"}
     package = packages.get(HABITATS[file])
     if package is not None:

@@ -7,16 +7,16 @@ from IPython.lib.pretty import pretty
 import primordia
 from primordia.history.summary import summary
 from primordia.runs import loop
-from tests.worlds import CLOCKWORK, config
+from tests.worlds import HERD, config
 
 
 def test_a_run_is_shown_by_its_summary(tmp_path: Path) -> None:
     """Control characters are spelled out."""
     name = "\x1b[31mred"
-    loop.start(config({**CLOCKWORK, "task": name, "stop": {"ticks": 300}}), tmp_path / "run")
+    loop.start(config({**HERD, "task": name, "stop": {"ticks": 100}}), tmp_path / "run")
     run = primordia.load(tmp_path / "run")
     assert pretty(run) == summary(run.info()).replace("\x1b", "\\x1b")
-    assert "2 worlds of 16 cells" in pretty(run)
+    assert "3 worlds of 24 cells" in pretty(run)
 
 
 def test_a_run_that_cannot_be_read_shows_the_error(tmp_path: Path) -> None:

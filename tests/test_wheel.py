@@ -17,7 +17,8 @@ ROOT = Path(__file__).parent.parent
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("wheel")
-    python("-m", "build", "--wheel", "--no-isolation", "--outdir", folder, ROOT)
+    build = "import sys; from hatchling.build import build_wheel; build_wheel(sys.argv[1])"
+    python("-c", build, folder, cwd=ROOT)
     (built,) = folder.glob("*.whl")
     return built
 
@@ -29,19 +30,32 @@ def python(*words: object, **options: Path | dict[str, str]) -> str:
     return str(done.stdout)
 
 
+ALL = """
+import sys
+from contextlib import suppress
+import primordia
+from primordia.cli import main
+print(primordia.__file__)
+for word in ("--version", "tasks"):
+    sys.argv[1:] = [word]
+    with suppress(SystemExit):
+        main()
+"""
+"""A program that prints where the package is, its version, and all tasks."""
+
+
 def test_the_wheel_runs_without_the_repository(wheel: Path, tmp_path: Path) -> None:
     installed, empty = tmp_path / "installed", tmp_path / "empty"
     empty.mkdir()
-    python("-m", "pip", "install", "--quiet", "--no-deps", "--target", installed, wheel)
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(installed)
     environment = {**os.environ, "PYTHONPATH": str(installed)}
-    where = "import primordia; print(primordia.__file__)"
-    assert python("-c", where, cwd=empty, env=environment).startswith(str(installed))
-    listed = python("-m", "primordia", "tasks", cwd=empty, env=environment)
-    assert [line.split()[0] for line in listed.splitlines()] == list(tasks())
+    where, versions, *listed = python("-c", ALL, cwd=empty, env=environment).splitlines()
+    assert where.startswith(str(installed))
+    assert [line.split()[0] for line in listed] == list(tasks())
     assert "CartPole-survival" in tasks()
     version = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
-    printed = python("-m", "primordia", "--version", cwd=empty, env=environment)
-    assert printed.split()[-1] == version
+    assert versions.split()[-1] == version
     assert list(empty.iterdir()) == []
 
 

@@ -16,11 +16,12 @@ from primordia import testing
 from primordia.runs.archive import Archive
 from primordia.runs.digest import digests
 from primordia.settings import doors
-from tests.commands import begin, complains, here
+from tests.commands import begin, complains, flags, here
 from tests.strangers import forget
+from tests.worlds import HOSTED
 
 MORE = ["--ticks", "120", "--quiet"]
-SHORT = ["--quiet", "--cells", "6", "--habitat.workers", "0"]
+SHORT = ["--quiet", *flags(HOSTED), "--habitat.workers", "0"]
 POND = "gym:tests.ponds:Pond-v0"
 SWAMP = """
 import gymnasium
@@ -136,6 +137,7 @@ def test_an_environment_in_jax_is_lived_in_by_its_name_alone(tmp_path: Path) -> 
     assert (tmp_path / "life.gif").stat().st_size > 1000
 
 
+@pytest.mark.slow
 def test_what_is_wrong_with_an_environment_in_jax_is_found(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -168,7 +170,8 @@ def test_check_names_faults_of_the_environment_and_breaches_of_the_contract(
             raise testing.ContractError(broken)
 
     env = "gymnax:tests.walks:Choice"
-    task = doors.task(env)._replace(facts=["a fact", "another"], faults=faults)
+    table = {"task": "Choice", "habitat": {"name": "gymnax", "env": "tests.walks:Choice"}}
+    task = doors.Task(table, ["a fact", "another"], faults)
     monkeypatch.setattr(doors, "task", lambda env: task)
     monkeypatch.setattr(testing, "check_habitat", check_habitat)
     done = here("check", env)

@@ -88,6 +88,7 @@ def test_figures_of_worlds_equal_those_of_brute_force(
     assert seen > 500
     assert [arm.worlds for arm in compared.arms] == [WORLDS] * 3
     assert compared.arms[2].saturated == WORLDS
+    assert "food" not in compared.outcomes, "these worlds have no metabolism"
     assert any(0 < arm.saturated < WORLDS for arm in compared.arms[:2])
 
 

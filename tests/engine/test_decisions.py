@@ -135,3 +135,15 @@ def test_an_organism_has_died_if_its_cell_is_empty_or_has_a_newborn(
     packed: Any = held
     assert np.flatnonzero(packed.organisms.alive).tolist() == [2, 4, 5]
     assert (bulk, lists) == ("bulk", "more events")
+
+
+def test_organisms_remember_their_senses_in_the_worlds_that_ran(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    form: Any = SimpleNamespace(release=lambda held, bulk: f"{held} with {bulk}")
+    given: Any = "law", "bulk", "held", "senses", "ran"
+    law, bulk, held, senses, ran = given
+    monkeypatch.setattr(calls, "remember", lambda *asked: asked)
+    monkeypatch.setattr(Bulk, "of", lambda world: world)
+    made = _Steps(law, form, 5).remember(bulk, held, senses, ran)
+    assert made == ("law", "held with bulk", "senses", "ran")

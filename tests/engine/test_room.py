@@ -1,6 +1,7 @@
 """Promise 2 when lists are full: whatever happens in one tick, no birth, death or sample is lost."""
 
 from functools import partial
+from itertools import product
 
 import jax
 import jax.numpy as jnp
@@ -80,8 +81,14 @@ def test_lists_with_the_least_room_lose_nothing(
         assert metrics["births"][sampled].tolist() == expected
 
 
-@pytest.mark.parametrize("which", LISTS)
-@pytest.mark.parametrize("cells", [8, 701])
+PAIRS = [("births", 8), ("deaths", 701), ("samples", 8)]
+OTHER_PAIRS = [pair for pair in product(LISTS, (8, 701)) if pair not in PAIRS]
+
+
+@pytest.mark.parametrize(
+    ("which", "cells"),
+    [*PAIRS, *(pytest.param(*pair, marks=pytest.mark.slow) for pair in OTHER_PAIRS)],
+)
 def test_the_fullest_tick_fits_whenever_lists_have_room(which: str, cells: int) -> None:
     """Cells are written one at a time in small worlds, and in batches, the last padded, in large ones."""
     law = law_of(MEADOW, cells=cells, seeds=3)

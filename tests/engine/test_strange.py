@@ -25,9 +25,21 @@ from tests import commands
 from tests.history.test_rebuilding import assert_rebuilt
 from tests.strange import BLOCKS, QUIET, SEEDS, STRANGE, STRANGER, TICKS
 from tests.test_goldens import assert_lived_as_it_did
-from tests.worlds import Lived, config
+from tests.worlds import MILL, Lived, config
 
 WORLDS = {"strange": STRANGE, "stranger": STRANGER, "blocks": BLOCKS}
+TURNING: dict[str, Any] = {
+    **MILL,
+    "brain": {"hidden": 4},
+    "seed": SEEDS[0],
+    "seeds": 2,
+    "replication": 0.7,
+    "hazard": 0.06,
+    "metabolism": {**MILL["metabolism"], "drain": 0.7},
+}
+"""Worlds of simpler rules, with as many births and deaths as the strange ones."""
+SEASONED = 1_000
+"""Ticks in which these have as many samples, since their seasons change more slowly."""
 FURTHER = [pytest.param(name, marks=pytest.mark.slow) for name in WORLDS if name != "strange"]
 
 
@@ -46,7 +58,7 @@ def whole(settings: dict[str, Any]) -> Lived:
     return Lived(config(settings), TICKS)
 
 
-def live_in_parts(settings: dict[str, Any], run: Path) -> None:
+def live_in_parts(settings: dict[str, Any], run: Path, end: int = TICKS) -> None:
     """Stop in the first chunk, when a moment is due, and when a sample is due, and go on."""
     moment, sample = 99, 100
     assert (moment % STRANGE["mutation"]["every"], sample % STRANGE["sample_every"]) == (0, 0)
@@ -55,8 +67,8 @@ def live_in_parts(settings: dict[str, Any], run: Path) -> None:
         signal.raise_signal(signal.SIGINT)
 
     with pytest.raises(KeyboardInterrupt):
-        loop.start(config(settings, stop={"ticks": TICKS}), run, listen=press)
-    for ticks in (moment, sample, TICKS):
+        loop.start(config(settings, stop={"ticks": end}), run, listen=press)
+    for ticks in (moment, sample, end):
         loop.resume(run, {"ticks": ticks})
 
 
@@ -67,12 +79,24 @@ def run(settings: dict[str, Any], tmp_path_factory: pytest.TempPathFactory) -> P
     return path
 
 
-@pytest.fixture(scope="module")
-def clocked(settings: dict[str, Any], tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The same worlds in a habitat on the host that tallies the ticks of each life."""
-    path = tmp_path_factory.mktemp("clocked") / "run"
-    live_in_parts(on_host(settings, "Clocked"), path)
-    return path
+@pytest.fixture(
+    scope="module", params=["mill", *(pytest.param(w, marks=pytest.mark.slow) for w in WORLDS)]
+)
+def twins(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> tuple[Lived, Path]:
+    """The same worlds in JAX, and in a habitat on the host that tallies the ticks of each life."""
+    settings = {"mill": TURNING, **WORLDS}[request.param]
+    path, end = tmp_path_factory.mktemp("clocked") / "run", TICKS
+    if settings is TURNING:
+        end = SEASONED
+    live_in_parts(on_host(settings, "Clocked"), path, end)
+    return Lived(config(settings), end), path
+
+
+@pytest.fixture
+def clocked(twins: tuple[Lived, Path]) -> Path:
+    return twins[1]
 
 
 def digests(run: Path) -> list[str]:
@@ -152,8 +176,9 @@ def test_worlds_that_stop_early_do_not_change_the_others(
         assert Lived(config(settings), stopped).digests()[world] == together.digests()[world]
 
 
-def test_a_habitat_on_the_host_lives_under_the_same_law(whole: Lived, clocked: Path) -> None:
+def test_a_habitat_on_the_host_lives_under_the_same_law(twins: tuple[Lived, Path]) -> None:
     """In chunks and parts of other lengths. What the habitat tallies is no part of the law."""
+    whole, clocked = twins
     run = primordia.load(clocked)
     for name in ("births", "deaths", "metrics"):
         here, there = run.arrays(name), whole.table(name)
@@ -231,17 +256,18 @@ def test_lives_and_games_follow_from_such_seeds(run: Path) -> None:
 
 
 PROGRAM = f"""
-import os
+import os, sys
 if hasattr(os, "sched_setaffinity"):
     os.sched_setaffinity(0, [min(os.sched_getaffinity(0))])
 from {__name__} import alone, described
-print(described(alone(1), 0))
+print(described(alone(sys.argv[1], 1), 0))
 """
+ANYWHERE = {"mill": TURNING, "strange": STRANGE}
 
 
-def alone(world: int) -> Lived:
+def alone(name: str, world: int) -> Lived:
     """Live one of the worlds without the other."""
-    return Lived(config(STRANGE, seed=SEEDS[world], seeds=1), TICKS)
+    return Lived(config(ANYWHERE[name], seed=SEEDS[world], seeds=1), TICKS)
 
 
 def described(lived: Lived, world: int) -> str:
@@ -257,11 +283,14 @@ ENVIRONMENT = {
 }  # fmt: skip
 
 
-def test_a_world_is_the_same_alone_on_one_thread_and_in_any_environment(tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", ["mill", pytest.param("strange", marks=pytest.mark.slow)])
+def test_a_world_is_the_same_alone_on_one_thread_and_in_any_environment(
+    name: str, tmp_path: Path
+) -> None:
     """Another process compiles everything itself, for one world and, on Linux, for one processor."""
     variables = commands.environment() | commands.AFRESH | ENVIRONMENT
     done = subprocess.run(
-        [sys.executable, "-c", PROGRAM], env=variables, cwd=tmp_path, capture_output=True,
+        [sys.executable, "-c", PROGRAM, name], env=variables, cwd=tmp_path, capture_output=True,
         text=True, check=True, encoding="utf-8",
     )  # fmt: skip
-    assert done.stdout.strip() == described(Lived(config(STRANGE), TICKS), 1)
+    assert done.stdout.strip() == described(Lived(config(ANYWHERE[name]), TICKS), 1)

@@ -22,18 +22,23 @@ from primordia.envs import Forager, LifeEnv, LifeVectorEnv, Survival
 from primordia.law.world import Cause
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.settings.tables import tasks
-from tests.habitats import test_atari_lives, test_mujoco_lives
+from tests.worlds import HOSTED
 
+RANDOM = {"senses": (51, 49, 54), "sticky": 0.25, "noops": 30, "frame_skip": 3,
+          "food": "ram[51] > 130", "workers": 0}  # fmt: skip
+SMALL: dict[str, Any] = {"cells": 6, "seeds": 2, "genesis": "fill", "hazard": 0.003}
+OWN: dict[str, dict[str, Any]] = {
+    "CartPole-survival": {},
+    "Pong-survival": {"habitat": RANDOM, "metabolism": {"store": 60.0, "gain": 0.75}},
+    "Reacher-forager-costly": {},
+}  # fmt: skip
+RIPPLES = {"food": "0.25", "effort": "abs(obs[1])", "workers": 0}
+"""A pond with food and effort; above, settings of runs, and those of slow tasks."""
 LONG = 10_000
 """Ticks after which a body should have died, so that a test of deaths ends also without them."""
 SIMULATORS = {"atari": "ale_py", "mujoco": "mujoco", "gymnasium": "Box2D"}
-SHOWN = {
-    "Acrobot-survival",
-    "BipedalWalker-forager",
-    "CartPole-survival",
-    "Pong-survival-forager",
-    "Reacher-forager",
-}
+SHOWN = {"Acrobot-survival", "BipedalWalker-forager", "CartPole-survival", "Pong-survival-forager",
+         "Reacher-forager"}  # fmt: skip
 """Tasks of each kind of simulator and of action. The others are slow."""
 
 
@@ -63,9 +68,8 @@ def test_every_task_is_an_environment_that_gymnasium_accepts(task: str) -> None:
 @pytest.mark.parametrize(
     ("task", "settings"),
     [
-        pytest.param("CartPole-survival", {"cells": 6, "seeds": 2}, marks=pytest.mark.slow),
-        pytest.param("Pong-survival", test_atari_lives.SETTINGS, marks=pytest.mark.slow),
-        ("Reacher-forager-costly", test_mujoco_lives.SMALL),
+        *(pytest.param(task, SMALL | own, marks=pytest.mark.slow) for task, own in OWN.items()),
+        ("gym:tests.ponds:Pond-v0", {**HOSTED, "replication": 0.3, "habitat": RIPPLES}),
     ],
 )
 def test_a_life_has_the_numbers_that_it_has_in_a_run(
@@ -73,20 +77,19 @@ def test_a_life_has_the_numbers_that_it_has_in_a_run(
 ) -> None:
     """The actions of an organism of a run, taken in the environment, from its birth to its death.
 
-    It lives in the second world, whose seed is the next one, and was born after the first tick. The
-    worlds have the law of other tests, which share its compiled code.
+    It lives in the last world, whose seed is that of the run plus its number, and was born later.
     """
     needed(task)
-    stop = {"ticks": 300, "until": "none"}
+    stop, last = {"ticks": 300, "until": "none"}, settings.get("seeds", 1) - 1
     run = primordia.run(task, tmp_path / "run", settings, stop=stop, seed=7)
     lives = run.lives()
     ended = lives.died & (lives.cause != Cause.HAZARD)
-    row = np.flatnonzero(ended & (lives.lifespan > 20) & (lives.world == 1) & (lives.born > 0))[0]
-    life = RelivedLife.of(run.opened(), int(lives.id[row]), 1)
+    which = ended & (lives.lifespan > 20) & (lives.world == last) & (lives.born > 0)
+    row = np.flatnonzero(which & (lives.cell > 0))[0]
+    life = RelivedLife.of(run.opened(), int(lives.id[row]), last)
     env = LifeEnv(task, settings)
     place = {"tick": int(life.record.born[0]), "cell": int(life.record.cell[0])}
-    assert place["tick"] > 0
-    senses, _ = env.reset(seed=8, options=place)
+    senses, _ = env.reset(seed=7 + last, options=place)
     for stretch in life.stretches():
         for i, action in enumerate(stretch.action):
             np.testing.assert_array_equal(senses, stretch.senses[i])
@@ -110,8 +113,15 @@ def played(env: Any, seed: int, actions: np.ndarray) -> list[tuple[Any, ...]]:
     return results
 
 
-@pytest.mark.parametrize("mode", [AutoresetMode.NEXT_STEP, AutoresetMode.DISABLED])
-@pytest.mark.parametrize("task", ["CartPole-survival", "Reacher-forager"])
+@pytest.mark.parametrize(
+    ("task", "mode"),
+    [
+        ("CartPole-survival", AutoresetMode.NEXT_STEP),
+        ("CartPole-survival", AutoresetMode.DISABLED),
+        ("Reacher-forager", AutoresetMode.NEXT_STEP),
+        pytest.param("Reacher-forager", AutoresetMode.DISABLED, marks=pytest.mark.slow),
+    ],
+)
 def test_environments_side_by_side_are_those_alone(task: str, mode: AutoresetMode) -> None:
     needed(task)
     made = gymnasium.make_vec(

@@ -5,7 +5,7 @@ from typing import Any
 
 import tomli_w
 
-from tests.worlds import HERD, MEADOW
+from tests.worlds import HERD, MEADOW, MILL
 
 SHARED: dict[str, Any] = {
     **MEADOW,
@@ -17,24 +17,41 @@ SHARED: dict[str, Any] = {
     "seeds": 3,
     "stop": {"ticks": 300},
 }
+"""Meadows, some of which are saturated soon."""
+MILLS: dict[str, Any] = {
+    **MILL,
+    "brain": {"hidden": 4},
+    "replication": 0.2,
+    "hazard": 0.01,
+    "seed": 3,
+    "seeds": 3,
+    "stop": {"ticks": 300},
+}
+"""Mills whose compiled code is that of the runs in `tests/runs`, for one, two or three worlds."""
 ARMS = [{"name": "mild"}, {"name": "harsh", "hazard": 0.05}]
 
 
-def write(folder: Path, name: str = "meadows", **changes: Any) -> Path:
+def write(folder: Path, name: str = "mills", **changes: Any) -> Path:
     """Write an experiment's file, and its task beside it -> the path of the file."""
-    folder.mkdir(exist_ok=True)
-    task = {name: SHARED[name] for name in ("task", "habitat", "cells")}
-    (folder / "meadow.toml").write_text(tomli_w.dumps(task))
-    shared = {name: value for name, value in SHARED.items() if name not in task}
-    values = {"question": "Is it mild?", "task": "meadow.toml", **shared, "jobs": {"worlds": 2}}
-    values = {**values, "arms": ARMS, **changes}
-    file = folder / f"{name}.toml"
-    kept = {name: value for name, value in values.items() if value is not None}
-    file.write_text(tomli_w.dumps(kept))
-    return file
+    return written(folder, name, MILLS, {*MILL} - {"hazard"}, {"jobs": {"worlds": 2}, **changes})
 
 
 def herds(folder: Path, **changes: Any) -> Path:
     """Write an experiment of two jobs, one for each arm, whose worlds are those of `HERD`."""
-    changes = {"saturation_ticks": None, "jobs": {"worlds": 3}, **changes}
-    return write(folder, **{**HERD, "task": "meadow.toml", "seed": 3, **changes})
+    changes = {"seed": 3, "stop": {"ticks": 300}, "jobs": {"worlds": 3}, **changes}
+    return written(folder, "meadows", HERD, {*MEADOW}, changes)
+
+
+def written(
+    folder: Path, name: str, worlds: dict[str, Any], task: set[str], changes: dict[str, Any]
+) -> Path:
+    """Write an experiment with these worlds, of whose settings `task` names those of the task."""
+    folder.mkdir(exist_ok=True)
+    file, place = folder / f"{name}.toml", f"{worlds['task']}.toml"
+    own = {key: value for key, value in worlds.items() if key in task}
+    (folder / place).write_text(tomli_w.dumps(own))
+    shared = {key: value for key, value in worlds.items() if key not in task}
+    values = {"question": "Is it mild?", "task": place, **shared, "arms": ARMS, **changes}
+    kept = {key: value for key, value in values.items() if value is not None}
+    file.write_text(tomli_w.dumps(kept))
+    return file

@@ -130,8 +130,8 @@ def test_a_directory_has_the_name_of_the_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    file = write(Path("files"), "meadow.v2")
-    assert campaign.planned(file).path == Path("runs", "meadow.v2")
+    file = write(Path("files"), "mill.v2")
+    assert campaign.planned(file).path == Path("runs", "mill.v2")
     begun = begin(file)
     assert begin(begun.path, Path("other")).path == begun.path
     assert not Path("other").exists()

@@ -16,7 +16,7 @@ from primordia.experiments.plan import Job
 from primordia.runs import loop
 from tests.commands import complains, here
 from tests.experiments.meadows import ARMS, write
-from tests.worlds import MEADOW, config
+from tests.worlds import MEADOW, MILL, config
 
 
 def jobs(file: Path) -> list[Job]:
@@ -35,7 +35,7 @@ def test_arms_are_cut_into_jobs_which_take_turns(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("task", "name"),
-    [("meadow.toml", MEADOW["task"]), ("CartPole-survival", "CartPole-survival")],
+    [("mill.toml", MILL["task"]), ("CartPole-survival", "CartPole-survival")],
 )
 def test_all_arms_have_the_name_of_their_task(task: str, name: str, tmp_path: Path) -> None:
     """A task in a file is named in this file."""
@@ -82,7 +82,7 @@ def test_arms_may_have_different_numbers_of_worlds(tmp_path: Path) -> None:
 
 def test_a_job_has_ten_worlds_in_jax_and_one_on_the_host(tmp_path: Path) -> None:
     assert read(write(tmp_path, jobs=None), tmp_path / "out").worlds == 10
-    arms = [{"name": "a", "habitat": {"name": "tests.toys:HostCartPole"}}]
+    arms = [{"name": "a", "habitat": {"name": "tests.toys:Mirror", "inner": "mill"}}]
     assert read(write(tmp_path, jobs=None, arms=arms), tmp_path / "out").worlds == 1
 
 
@@ -111,7 +111,7 @@ def test_words_of_a_question_may_change_and_settings_may_not(tmp_path: Path) -> 
     out = tmp_path / "out"
     begin(write(tmp_path), out)
     begin(write(tmp_path, question="Another one?", jobs=None), out)
-    begin(write(tmp_path, about="a meadow, in other words"), out)
+    begin(write(tmp_path, about="a mill, in other words"), out)
     kept = plans.recorded(out)
     assert (kept.question, kept.arms[0].settings["about"]) == ("Is it mild?", ""), "the first ones"
     other: list[dict[str, Any]] = [{"name": "mild"}, {"name": "harsh", "hazard": 0.5}]
@@ -151,7 +151,7 @@ def test_words_of_a_question_may_change_and_settings_may_not(tmp_path: Path) -> 
         ({"arms": [{"name": "a", "hazard": 2.0}]}, "arm 'a': .*hazard"),
         ({"fork": {"of": "none", "at": 5}}, "none is not a run"),
         ({"fork": {"at": 5}}, "fork.of is missing"),
-        ({"fork": {"of": "meadows/mild", "at": 0}}, "fork.at: "),
+        ({"fork": {"of": "mills/mild", "at": 0}}, "fork.at: "),
     ],
 )  # fmt: skip
 def test_a_wrong_file_is_one_clear_line(
@@ -244,7 +244,7 @@ def test_a_fork_has_the_jobs_and_settings_of_its_source(tmp_path: Path) -> None:
     changed = read(file, tmp_path / "elsewhere" / "two")
     assert changed.arms[0].config.hazard == 0.25
     assert [job.source for job in changed.jobs()][::2] == [f"../one/harsh/{n}" for n in range(3)]
-    for name, value in {"task": "meadow.toml", "seeds": 3, "cells": 16}.items():
+    for name, value in {"task": "mill.toml", "seeds": 3, "cells": 24}.items():
         arm = {"arms": [{"name": "same"}, {"name": "safe", name: value}]}
         for place in ({**other, name: value}, arm):
             file = write(tmp_path, "two", fork=fork, **{**dict.fromkeys(names), **place})

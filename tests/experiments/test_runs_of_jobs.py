@@ -34,12 +34,12 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> MagicMock:
 
 @pytest.fixture
 def chosen(tmp_path: Path) -> Campaign:
-    return begin(write(tmp_path), tmp_path / "runs" / "meadows")
+    return begin(write(tmp_path), tmp_path / "runs" / "mills")
 
 
 @pytest.fixture
 def forked(chosen: Campaign, tmp_path: Path) -> Campaign:
-    fork = {"fork": {"of": "meadows/mild", "at": 150}, "task": None, "seeds": None}
+    fork = {"fork": {"of": "mills/mild", "at": 150}, "task": None, "seeds": None}
     return begin(write(tmp_path, "two", **fork), tmp_path / "runs" / "two")
 
 
@@ -72,7 +72,7 @@ def test_a_fork_is_made_once_and_goes_on(
         return
     source, tick, made, changes, _ = calls.fork.call_args[0]
     assert (source, tick, made) == (calls.Archive(), 150, run)
-    assert calls.Archive.call_args_list[0][0] == (forked.path.parent / "meadows" / "mild" / "0-1",)
+    assert calls.Archive.call_args_list[0][0] == (forked.path.parent / "mills" / "mild" / "0-1",)
     own = {"task", "about", "fork", "seeds", "ancestors"}
     assert {*changes} == {*Config.model_fields} - own
     assert (changes["seed"], changes["hazard"]) == (config.seed, config.hazard) == (3, 0.05)

@@ -19,7 +19,7 @@ from tests.worlds import MEADOW, config
 @pytest.fixture(scope="module")
 def poles(tmp_path_factory: pytest.TempPathFactory) -> primordia.Run:
     path = tmp_path_factory.mktemp("film") / "poles"
-    return primordia.run("CartPole-survival", path, cells=16, stop={"ticks": 300})
+    return primordia.run("CartPole-survival", path, cells=16, stop={"ticks": 170})
 
 
 def test_a_world_is_filmed_with_the_life_of_the_oldest_beside_it(poles: primordia.Run) -> None:
@@ -59,8 +59,8 @@ def test_the_film_of_a_fork_counts_the_births_before_it(
     poles: primordia.Run, tmp_path: Path
 ) -> None:
     """An unchanged fork goes on as its source, so both count alike at each tick."""
-    fork = poles.fork(200, tmp_path / "fork", stop={"ticks": 300})
-    ticks = np.arange(200, 301)
+    fork = poles.fork(120, tmp_path / "fork", stop={"ticks": 170})
+    ticks = np.arange(120, 171)
     counts = [
         films.births_until(run.opened(), run.opened().lives, ticks).tolist()
         for run in (poles, fork)

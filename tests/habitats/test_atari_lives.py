@@ -26,28 +26,34 @@ from tests.organism.test_life import at_the_end
 
 pytest.importorskip("ale_py")
 
-SENSES = (51, 49, 54)
+TASK, SENSES = "Breakout-survival-forager", (72, 99, 101)
 STOP = {"ticks": 250, "until": "none"}
 SETTINGS: dict[str, Any] = {
     "cells": 6,
-    "seeds": 2,
-    "genesis": "fill",
-    "habitat": {"senses": SENSES, "sticky": 0.25, "noops": 30, "frame_skip": 3,
-                "food": "ram[51] > 130", "workers": 0},
-    "metabolism": {"store": 60.0, "gain": 0.75},
-    "hazard": 0.003,
-}  # fmt: skip
+    "habitat": {
+        "sticky": 0.25,
+        "noops": 30,
+        "frame_skip": 3,
+        "food": "ram[72] > 130",
+        "workers": 0,
+    },
+    "metabolism": {"store": 25.0, "gain": 0.75},
+    "replication": 0.3,
+    "hazard": 0.01,
+    "sample_every": 50,
+}
+"""A world with sticky buttons, no-ops and hunger, in the law of a golden."""
 
 
 @pytest.fixture(scope="module")
-def pong(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Make a run with sticky buttons, no-ops and hunger; both worlds have lives of all kinds."""
-    run = tmp_path_factory.mktemp("pong") / "run"
-    return primordia.run("Pong-survival", run, SETTINGS, stop=STOP).path
+def breakout(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Make a run with lives of all kinds."""
+    run = tmp_path_factory.mktemp("breakout") / "run"
+    return primordia.run(TASK, run, SETTINGS, stop=STOP).path
 
 
-def test_the_emulators_version_is_recorded(pong: Path) -> None:
-    assert primordia.load(pong).info()["versions"]["ale-py"] == version("ale-py")
+def test_the_emulators_version_is_recorded(breakout: Path) -> None:
+    assert primordia.load(breakout).info()["versions"]["ale-py"] == version("ale-py")
 
 
 def of_worlds(run: primordia.Run, what: str = "digest") -> list[Any]:
@@ -60,15 +66,15 @@ def after(run: primordia.Run, tick: int) -> list[dict[str, Any]]:
     return [row for row in run.table("deaths").to_pylist() if row["tick"] > tick]
 
 
-def test_runs_are_exact(pong: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_runs_are_exact(breakout: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Runs are equal with workers or none, after a resume, in a fork and lived again.
 
     A checkpoint that was written with workers is resumed without.
     """
-    whole, habitat = primordia.load(pong), {**SETTINGS["habitat"], "workers": None}
+    whole, habitat = primordia.load(breakout), {**SETTINGS["habitat"], "workers": None}
     monkeypatch.setenv("PRIMORDIA_CORES", "2")
     parts = primordia.run(
-        "Pong-survival", tmp_path / "run", SETTINGS, habitat=habitat, stop={**STOP, "ticks": 90}
+        TASK, tmp_path / "run", SETTINGS, habitat=habitat, stop={**STOP, "ticks": 90}
     )
     assert of_worlds(parts) != of_worlds(whole)
     monkeypatch.setenv("PRIMORDIA_CORES", "1")
@@ -98,11 +104,11 @@ def test_emulators_that_are_free_are_used_again(
     monkeypatch.setattr(simulator, "console", counted)
     found = []
     for name in ("first", "second"):
-        run = primordia.run("Pong-survival", tmp_path / name, SETTINGS, stop={**STOP, "ticks": 60})
+        run = primordia.run(TASK, tmp_path / name, SETTINGS, stop={**STOP, "ticks": 60})
         found.append(of_worlds(run))
         del run
         gc.collect()
-    assert made == ["pong"] * 12
+    assert made == ["breakout"] * 6
     assert found[0] == found[1]
     first, second = (Archive(tmp_path / name).state for name in ("first", "second"))
     for name, array in first.items():
@@ -140,17 +146,17 @@ def assert_ends_as_recorded(run: Archive, organism: int, world: int) -> None:
 
 
 @pytest.mark.parametrize("cause", [Cause.FATAL, Cause.STARVED, Cause.HAZARD, None])
-def test_a_life_lived_again_ends_as_recorded(pong: Path, cause: Cause | None) -> None:
-    run = Archive(pong)
+def test_a_life_lived_again_ends_as_recorded(breakout: Path, cause: Cause | None) -> None:
+    run = Archive(breakout)
     lives = run.lives
     which = ~lives.died if cause is None else lives.cause == cause
     for organism, world in some(lives, which, 2):
         assert_ends_as_recorded(run, organism, world)
 
 
-def test_a_life_is_lived_again_through_a_fork(pong: Path, tmp_path: Path) -> None:
+def test_a_life_is_lived_again_through_a_fork(breakout: Path, tmp_path: Path) -> None:
     """The fork has another seed; the emulator, its random state and the score continue unchanged."""
-    whole = primordia.load(pong)
+    whole = primordia.load(breakout)
     other = whole.fork(200, tmp_path / "fork", seed=8)
     assert after(other, 200) != after(whole, 200)
     fork = Archive(other.path)
@@ -160,18 +166,18 @@ def test_a_life_is_lived_again_through_a_fork(pong: Path, tmp_path: Path) -> Non
         assert_ends_as_recorded(fork, organism, world)
 
 
-def test_a_policy_acts_as_its_organism_did(pong: Path) -> None:
-    organism = primordia.load(pong).oldest()
+def test_a_policy_acts_as_its_organism_did(breakout: Path) -> None:
+    organism = primordia.load(breakout).oldest()
     policy = organism.policy()
     (seen,) = RelivedLife.of(organism.run, organism.id, organism.world).stretches()
     assert [policy(senses) for senses in seen.senses] == seen.action.tolist()
 
 
-def test_a_video_shows_a_life(pong: Path, tmp_path: Path) -> None:
-    lives = Archive(pong).lives
+def test_a_video_shows_a_life(breakout: Path, tmp_path: Path) -> None:
+    lives = Archive(breakout).lives
     ((organism, world),) = some(lives, lives.cause == Cause.FATAL, 1)
     path = tmp_path / "life.mp4"
-    done = here("replay", pong, "--organism", organism, "--world", world, "--out", path)
+    done = here("replay", breakout, "--organism", organism, "--world", world, "--out", path)
     assert (done.returncode, done.stdout.strip()) == (0, str(path))
     with av.open(str(path)) as container:
         assert container.streams.video[0].average_rate == 20

@@ -63,7 +63,7 @@ def pressed(made: Arcade, arrays: dict[str, np.ndarray], buttons: dict[int, int]
 
 @pytest.mark.parametrize(
     ("positions", "game", "skip", "noops"),
-    [(80, "breakout", 3, 0), (150, "pong", 1, 4), (10_000, "pong", 1, 0), *SLOW],
+    [(80, "breakout", 3, 4), pytest.param(150, "pong", 1, 4, marks=pytest.mark.slow), *SLOW],
 )
 def test_lives_are_those_of_emulators_that_forget_nothing_and_share_nothing(
     positions: int, game: str, skip: int, noops: int, monkeypatch: pytest.MonkeyPatch

@@ -1,9 +1,7 @@
 """CartPole equals Gymnasium's environment, step for step."""
 
 import math
-import os
-import subprocess
-import sys
+from collections.abc import Iterator
 from itertools import permutations
 from typing import Any
 
@@ -24,6 +22,14 @@ def gym_cartpole() -> gymnasium.Env:
     return gymnasium.make("CartPole-v1").unwrapped
 
 
+@pytest.fixture
+def _float64() -> Iterator[None]:
+    """Let JAX compute in float64."""
+    jax.config.update("jax_enable_x64", True)
+    yield
+    jax.config.update("jax_enable_x64", False)
+
+
 def random_states(count: int) -> np.ndarray:
     rng = np.random.default_rng(7)
     spread = np.array([2.6, 3.0, 0.25, 3.0])
@@ -34,67 +40,52 @@ def test_one_step_from_the_same_state_agrees_with_gymnasium(gym_cartpole: Any) -
     states = random_states(2000)
     actions = np.arange(len(states)) % 2
     after, outcome = jax.jit(CartPole().step)(states, actions)
-    near_a_limit = 0
+    expected, terminated = np.zeros((len(states), 4)), np.zeros(len(states), bool)
+    gym_cartpole.reset()
     for i, state in enumerate(states):
-        gym_cartpole.reset()
-        gym_cartpole.state = state.astype(np.float64)
-        _, _, terminated, _, _ = gym_cartpole.step(int(actions[i]))
-        expected = np.array(gym_cartpole.state)
-        np.testing.assert_allclose(after[i], expected, rtol=1e-6, atol=1e-7)
-        if (np.abs(np.abs(expected) - LIMITS) < 1e-6).any():
-            near_a_limit += 1
-            continue
-        assert bool(outcome.fatal[i]) == terminated
-    assert near_a_limit < 5
+        gym_cartpole.state, gym_cartpole.steps_beyond_terminated = state.astype(np.float64), None
+        _, _, terminated[i], _, _ = gym_cartpole.step(int(actions[i]))
+        expected[i] = gym_cartpole.state
+    np.testing.assert_allclose(after, expected, rtol=1e-6, atol=1e-7)
+    near_a_limit = (np.abs(np.abs(expected) - LIMITS) < 1e-6).any(axis=1)
+    np.testing.assert_array_equal(
+        np.asarray(outcome.fatal)[~near_a_limit], terminated[~near_a_limit]
+    )
+    assert near_a_limit.sum() < 5
     assert 0.1 < np.mean(outcome.fatal) < 0.9
 
 
-EPISODES = """
-import gymnasium, jax, numpy as np
-from primordia.habitats.cartpole.habitat import CartPole
-from primordia.habitats.cartpole.picture import draw
-gym, step = gymnasium.make("CartPole-v1").unwrapped, jax.jit(CartPole().step)
-rng, free, forced, lengths = np.random.default_rng(1), 0.0, 0.0, []
-
-def apart(ours, theirs):
-    return np.abs((ours - theirs) / np.maximum(np.abs(theirs), 1e-3)).max()
-
-for episode in range(60):
-    balance = episode % 2
-    gym.reset(seed=episode)
-    ours, done, ticks = np.array(gym.state)[None], False, 0
-    weights = rng.normal(size=4)
-    while not done and ticks < 500:
-        action = int(weights @ gym.state > 0) if balance else int(rng.integers(2))
-        before = np.array(gym.state)[None]
-        _, _, done, _, _ = gym.step(action)
-        one, outcome = step(before, np.array([action]))
-        assert one.dtype == np.float64 and bool(outcome.fatal[0]) == done
-        forced = max(forced, apart(np.asarray(one)[0], gym.state))
-        if not balance:
-            ours, outcome = step(ours, np.array([action]))
-            assert bool(outcome.fatal[0]) == done
-            free = max(free, apart(np.asarray(ours)[0], gym.state))
-        ticks += 1
-    lengths.append(ticks)
-print(free, forced, max(lengths[::2]), max(lengths))
-"""
+def apart(ours: Any, theirs: Any) -> float:
+    """Return the largest relative difference between two states."""
+    return float(np.abs((np.asarray(ours)[0] - theirs) / np.maximum(np.abs(theirs), 1e-3)).max())
 
 
-def test_whole_episodes_agree_in_float64() -> None:
+@pytest.mark.usefixtures("_float64")
+def test_whole_episodes_agree_in_float64(gym_cartpole: Any) -> None:
     """Short episodes of random pushes agree as a whole; long episodes agree in each single step.
 
     A balanced pole multiplies any difference by e every 13 ticks. After 500 ticks the last bit of a
     float64 has grown to the size of the track, so whole long episodes cannot agree.
     """
-    environment = {**os.environ, "JAX_ENABLE_X64": "1"}
-    command = [sys.executable, "-c", EPISODES]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    free, forced, longest_free, longest = map(float, done.stdout.split())
-    assert max(free, forced) < 1e-12
-    assert longest_free > 40
-    assert longest > 200
+    rng, differ, lengths = np.random.default_rng(1), 0.0, []
+    step = jax.jit(CartPole().step)
+    for episode in range(60):
+        balance, weights = episode % 2, rng.normal(size=4)
+        gym_cartpole.reset(seed=episode)
+        ours, over, ticks = np.array(gym_cartpole.state)[None], False, 0
+        while not over and ticks < 500:
+            before = np.array(gym_cartpole.state)[None]
+            action = int(weights @ before[0] > 0) if balance else int(rng.integers(2))
+            _, _, over, _, _ = gym_cartpole.step(action)
+            for state in (before, ours)[: 2 - balance]:
+                ours, outcome = step(state, np.array([action]))
+                assert (ours.dtype, bool(outcome.fatal[0])) == (np.float64, over)
+                differ = max(differ, apart(ours, gym_cartpole.state))
+            ticks += 1
+        lengths.append(ticks)
+    assert differ < 1e-12
+    assert max(lengths[::2]) > 40
+    assert max(lengths) > 200
 
 
 def test_bodies_start_uniform_within_the_spread() -> None:

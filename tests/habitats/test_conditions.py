@@ -64,7 +64,7 @@ def by_python(text: str, body: int) -> Any:
     return eval(text, {"__builtins__": {}, **known}, names)
 
 
-@settings(max_examples=150)
+@settings(max_examples=50)
 @given(condition)
 def test_conditions_mean_what_they_mean_in_python(text: str) -> None:
     values = np.broadcast_to(parse(text, "condition", NAMES)(VALUES), 3)
@@ -72,7 +72,7 @@ def test_conditions_mean_what_they_mean_in_python(text: str) -> None:
     assert values.tolist() == [bool(by_python(text, body)) for body in range(3)]
 
 
-@settings(max_examples=150)
+@settings(max_examples=50)
 @given(number)
 def test_amounts_mean_what_they_mean_in_python(text: str) -> None:
     values = np.broadcast_to(parse(text, "amount", NAMES)(VALUES), 3)
@@ -289,7 +289,7 @@ def is_computed_or_refused(text: str, kind: Literal["condition", "amount", "numb
 KINDS: Any = st.sampled_from(["condition", "amount", "numbers"])
 
 
-@settings(max_examples=100)
+@settings(max_examples=40)
 @given(WILD, KINDS)
 def test_any_text_is_computed_or_refused(text: str, kind: Any) -> None:
     is_computed_or_refused(text, kind)

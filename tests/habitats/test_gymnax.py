@@ -135,6 +135,7 @@ def test_an_environment_like_playgrounds_is_perceived_as_by_a_policy_and_ends_wh
         np.testing.assert_allclose(outcome.food, far, 1e-5)
         np.testing.assert_array_equal(outcome.fatal, far > 2)
     assert not habitat.simulator.changes_state()
+    assert Gymnax(env="tests.walks:Overwriting").simulator.changes_state()
 
 
 def test_what_is_scored_has_the_reward_and_the_time_limit() -> None:

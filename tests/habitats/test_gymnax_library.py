@@ -24,7 +24,8 @@ WORDS = np.random.default_rng(5).integers(2**32, size=(6, 2), dtype=np.uint32)
 
 
 @pytest.mark.parametrize(
-    "name", ["Breakout-MinAtar", pytest.param("Asterix-MinAtar", marks=pytest.mark.slow)]
+    "name",
+    ["Catch-bsuite", *(pytest.param(name, marks=pytest.mark.slow) for name in MINATAR[:2])],
 )
 def test_a_life_is_what_the_library_computes(name: str) -> None:
     habitat, (env, params) = Gymnax(env=name, food="reward"), gymnax.make(name)
@@ -64,6 +65,7 @@ def test_a_task_is_made_from_lives_at_random() -> None:
     assert validated(table, source="test").build_habitat().env in table["about"]
 
 
+@pytest.mark.slow
 def test_what_is_known_of_an_environment_is_said() -> None:
     _, facts, faults = task("CartPole-v1")
     assert faults == []
@@ -97,7 +99,7 @@ def test_players_act_and_perceive_the_grid() -> None:
     ("name", "size"),
     [
         ("CartPole-v1", (600, 400)),
-        ("Breakout-MinAtar", (400, 400)),
+        pytest.param("Breakout-MinAtar", (400, 400), marks=pytest.mark.slow),
         ("Catch-bsuite", (200, 400)),
         pytest.param("Craftax-Classic-Symbolic-v1", (576, 576), marks=pytest.mark.slow),
     ],

@@ -6,6 +6,7 @@ from typing import Any
 import av
 import numpy as np
 import pytest
+import tomli_w
 
 import primordia
 from primordia.errors import InputError
@@ -14,40 +15,59 @@ from primordia.law.metabolism import ONE
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
-from tests.robots import born, of_task
+from tests.robots import MOTOR, SLIDE, born, of_task
+from tests.worlds import HOSTED
 
 pytest.importorskip("mujoco")
 
 SMALL: dict[str, Any] = {"cells": 6, "seeds": 2, "genesis": "fill", "hazard": 0.003}
-MOVING = {"food": "0.2 * abs(com_forward)"}
-"""Food that is measured from the place of a body in the tick before."""
+BOX: dict[str, Any] = {
+    "task": "box",
+    **HOSTED,
+    "habitat": {
+        "name": "mujoco",
+        "file": "box.xml",
+        "position_noise": 0.5,
+        "velocity_noise": 1.0,
+        "substeps": 10,
+        "fatal": "abs(qpos[0]) > 1",
+        "effort": "abs(ctrl[0])",
+        "food": "9 * abs(com_forward)",
+    },
+    "replication": 0.1,
+    "hazard": 0.01,
+    "stop": {"ticks": 260, "until": "none"},
+}
+"""Boxes that slide along a line, in a law of other tests. Their food is measured from the place of a
+body in the tick before."""
 
 
 @pytest.fixture(scope="module")
-def reachers(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    run = tmp_path_factory.mktemp("reachers") / "run"
-    stop = {"ticks": 260, "until": "none"}
-    return primordia.run("Reacher-forager-costly", run, **SMALL, habitat=MOVING, stop=stop).path
+def boxes(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("boxes")
+    (folder / "box.xml").write_text(SLIDE.format(actuator=MOTOR))
+    (folder / "box.toml").write_text(tomli_w.dumps(BOX))
+    return primordia.run(str(folder / "box.toml"), folder / "run").path
 
 
 def digests(run: primordia.Run) -> list[str]:
     return [world["digest"] for world in run.info()["worlds"]]
 
 
-@pytest.mark.slow
-def test_a_run_that_was_stopped_continues_exactly(reachers: Path, tmp_path: Path) -> None:
+def test_a_run_that_was_stopped_continues_exactly(boxes: Path, tmp_path: Path) -> None:
     """This holds also where food is measured from the body's place before the stop."""
     stop = {"ticks": 67, "until": "none"}
-    run = primordia.run(
-        "Reacher-forager-costly", tmp_path / "run", **SMALL, habitat=MOVING, stop=stop
-    )
+    run = primordia.run(str(boxes.parent / "box.toml"), tmp_path / "run", stop=stop)
+    assert run.info()["worlds"][0]["births"] > 6
     run.resume(ticks=260)
-    assert digests(run) == digests(primordia.load(reachers))
+    assert digests(run) == digests(primordia.load(boxes))
 
 
 @pytest.mark.slow
-def test_evaluations_are_cut_where_gymnasium_cuts(reachers: Path) -> None:
-    evaluation = primordia.load(reachers).oldest().evaluate(games=3, ticks=400)
+def test_evaluations_are_cut_where_gymnasium_cuts(tmp_path: Path) -> None:
+    stop = {"ticks": 260, "until": "none"}
+    run = primordia.run("Reacher-forager-costly", tmp_path / "run", **SMALL, stop=stop)
+    evaluation = run.oldest().evaluate(games=3, ticks=400)
     assert evaluation.whole is not None
     assert evaluation.whole.ticks.tolist() == [50] * 3
     assert (evaluation.games, evaluation.distinct) == (3, 3)
@@ -55,19 +75,20 @@ def test_evaluations_are_cut_where_gymnasium_cuts(reachers: Path) -> None:
     assert evaluation.lived.over.all()
 
 
-def test_lives_are_lived_again_through_a_fork(reachers: Path, tmp_path: Path) -> None:
-    fork = Archive(primordia.load(reachers).fork(200, tmp_path / "fork", seed=9).path)
+def test_lives_are_lived_again_through_a_fork(boxes: Path, tmp_path: Path) -> None:
+    fork = Archive(primordia.load(boxes).fork(200, tmp_path / "fork", seed=9).path)
     lives = fork.lives
-    older = np.flatnonzero(lives.born <= 200)[:4]
+    older = np.flatnonzero((lives.born <= 200) & (lives.ended > 200))[:4]
+    assert len(older) == 4
     for row in older:
         life = RelivedLife.of(fork, int(lives.id[row]), int(lives.world[row]))
         assert list(life.stretches())[-1].tick[-1] == life.ends
 
 
-def test_lives_are_lived_again_as_recorded(reachers: Path) -> None:
-    run = Archive(reachers)
+def test_lives_are_lived_again_as_recorded(boxes: Path) -> None:
+    run = Archive(boxes)
     lives = run.lives
-    dead = primordia.load(reachers).arrays("deaths")
+    dead = primordia.load(boxes).arrays("deaths")
     energy = {(w, i): e for w, i, e in zip(dead["world"], dead["id"], dead["energy"], strict=True)}
     rows = np.flatnonzero(lives.died & (lives.lifespan > 20))[:6]
     assert len(rows) == 6
@@ -104,10 +125,10 @@ def test_pictures_show_the_robot_in_its_place(task: str) -> None:
     assert (first[:56] == first[0, 0]).all()
 
 
-def test_a_video_shows_a_life(reachers: Path, tmp_path: Path) -> None:
+def test_a_video_shows_a_life(boxes: Path, tmp_path: Path) -> None:
     needs_gl()
     path = tmp_path / "life.mp4"
-    done = here("replay", reachers, "--to", 10, "--out", path)
+    done = here("replay", boxes, "--to", 10, "--out", path)
     assert (done.returncode, done.stdout.strip()) == (0, str(path))
     with av.open(str(path)) as container:
         frames = [frame.to_ndarray(format="rgb24") for frame in container.decode(video=0)]
@@ -117,11 +138,11 @@ def test_a_video_shows_a_life(reachers: Path, tmp_path: Path) -> None:
 
 
 def test_without_opengl_the_error_says_what_to_install(
-    reachers: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    boxes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     mujoco_picture._gl_context.cache_clear()
     monkeypatch.setenv("MUJOCO_GL", "nothing")
-    done = here("replay", reachers, "--to", 10, "--out", tmp_path / "life.mp4")
+    done = here("replay", boxes, "--to", 10, "--out", tmp_path / "life.mp4")
     mujoco_picture._gl_context.cache_clear()
     complains(
         done,

@@ -20,38 +20,37 @@ from primordia.history.foraging import Harvest, foraging, harvests
 from primordia.law.metabolism import ONE
 from primordia.runs import loop
 from primordia.runs.archive import Archive
+from primordia.runs.records import Records
 from tests.commands import here
-from tests.worlds import MEADOW, RING, config
-
-FOOD = 0.25
-FED: dict[str, Any] = {
-    **MEADOW,
-    "habitat": {"name": "tests.toys:Meadow", "lifespan": 60, "food": FOOD},
-    "metabolism": {"store": 30.0, "drain": 1.0, "gain": 2.0},
-    "seasons": [{"kind": "schedule", "setting": "metabolism.gain", "at": 200, "value": 8.0}],
-    "brain": {"hidden": 1},
-    "seeds": 2,
-    "replication": 0.1,
-    "sample_every": 40,
-    "stop": {"ticks": 400, "until": "none"},
-}
+from tests.history.larders import FED, FOOD
+from tests.worlds import RING, config
 
 
 @pytest.fixture(scope="module")
-def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
-    """Make runs with the same food for all: enough from tick 200 on, too little, and none."""
-    folder = tmp_path_factory.mktemp("foraging")
-    less = {**FED, "habitat": {**FED["habitat"], "food": FOOD / 2}}
-    none = {**RING, "stop": FED["stop"]}
-    for name, settings in {"fed": FED, "less": less, "none": none}.items():
-        loop.start(config(settings), folder / name)
-    return {name: folder / name for name in ("fed", "less", "none")}
+def fed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Make a run with the same food for all, which is enough from tick 200 on."""
+    run = tmp_path_factory.mktemp("foraging") / "fed"
+    loop.start(config(FED), run)
+    return run
 
 
-def test_all_gather_the_food_there_is_and_seasons_move_the_break_even(
-    runs: dict[str, Path],
-) -> None:
-    gathered = foraging(Archive(runs["fed"]))
+@pytest.fixture(scope="module")
+def less(fed: Path) -> Path:
+    """Make a run with half of that food."""
+    habitat = {**FED["habitat"], "food": FOOD / 2}
+    loop.start(config({**FED, "habitat": habitat}), fed.with_name("less"))
+    return fed.with_name("less")
+
+
+@pytest.fixture(scope="module")
+def none(fed: Path) -> Path:
+    """Make a run without food."""
+    loop.start(config({**RING, "stop": FED["stop"]}), fed.with_name("none"))
+    return fed.with_name("none")
+
+
+def test_all_gather_the_food_there_is_and_seasons_move_the_break_even(fed: Path) -> None:
+    gathered = foraging(Archive(fed))
     assert gathered.food.shape == gathered.break_even.shape == (2, len(gathered.middle))
     assert len(gathered.middle) >= 400 // FED["sample_every"]
     np.testing.assert_allclose(gathered.food, FOOD)
@@ -79,19 +78,17 @@ def test_food_between_samples_is_the_food_gathered_over_the_ticks_lived(
 
 
 @pytest.mark.slow
-def test_only_runs_with_food_have_the_figure(runs: dict[str, Path], tmp_path: Path) -> None:
-    for name, drawn in (("fed", True), ("none", False)):
-        files = [path.name for path in primordia.Run(runs[name]).plot(tmp_path / name)]
+def test_only_runs_with_food_have_the_figure(fed: Path, none: Path, tmp_path: Path) -> None:
+    for run, drawn in ((fed, True), (none, False)):
+        files = [path.name for path in primordia.Run(run).plot(tmp_path / run.name)]
         assert ("foraging.png" in files, "foraging.svg" in files) == (drawn, drawn)
     svg = (tmp_path / "fed" / "foraging.svg").read_text(encoding="utf-8")
     for words in ("in a tick", "median and quartiles of 2 worlds", "break-even", "time (ticks)"):
         assert words in svg
 
 
-def test_the_figure_of_a_fork_that_has_not_lived_says_so(
-    runs: dict[str, Path], tmp_path: Path
-) -> None:
-    forked = primordia.load(runs["fed"]).fork(30, tmp_path / "fork", stop={"ticks": 30})
+def test_the_figure_of_a_fork_that_has_not_lived_says_so(fed: Path, tmp_path: Path) -> None:
+    forked = primordia.load(fed).fork(30, tmp_path / "fork", stop={"ticks": 30})
     with style.applied():
         drawn = figure.draw(Archive(forked.path), 0)
         drawn.draw_without_rendering()
@@ -213,18 +210,39 @@ def test_food_that_no_organism_can_live_on_has_no_break_even(tmp_path: Path) -> 
     assert "break-even" not in {text.get_text() for text in drawn.axes[0].texts}
 
 
-def test_runs_with_food_are_compared_by_it(runs: dict[str, Path], tmp_path: Path) -> None:
-    compared = primordia.compare(runs["fed"], runs["less"])
+def assert_compared_by_food(fed: Path, less: Path, out: Path) -> None:
+    compared = primordia.compare(fed, less)
     assert compared.outcomes["food"] == "food a tick, late"
     values = [arm.measured["food"].value.tolist() for arm in compared.arms]
     np.testing.assert_allclose(values, [[FOOD] * 2, [FOOD / 2] * 2])
     against = compared.contrast(compared.arms[1], "food")
     assert (against.delta, against.ratio) == (-1, (0.5, 0.5))
-    again = Path(shutil.copytree(runs["none"], tmp_path / "again"))
-    assert "food" not in primordia.compare(runs["none"], again).outcomes
     np.testing.assert_allclose(
         [arm.gathering.curve.mean() for arm in compared.arms], [FOOD, FOOD / 2]
     )
-    printed = here("compare", runs["fed"], runs["less"], "--out", tmp_path)
+    printed = here("compare", fed, less, "--out", out)
     assert re.search(r"-1\.00 less +-1\.00 +0\.5\n", printed.stdout)
-    assert "Food gathered in a tick" in (tmp_path / "compare.svg").read_text(encoding="utf-8")
+    assert "Food gathered in a tick" in (out / "compare.svg").read_text(encoding="utf-8")
+
+
+def test_runs_with_food_are_compared_by_it(
+    fed: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The other run is a copy, in whose metrics all organisms gathered half as much."""
+    less, read = Path(shutil.copytree(fed, tmp_path / "less")), harvests
+
+    def halved(run: Records, worlds: int) -> list[Harvest]:
+        share = 0.5 if run.paths[0] == less else 1.0
+        return [each._replace(food=share * each.food) for each in read(run, worlds)]
+
+    monkeypatch.setattr("primordia.comparison.pace.harvests", halved)
+    assert_compared_by_food(fed, less, tmp_path)
+
+
+@pytest.mark.slow
+def test_runs_with_unequal_food_are_compared_by_it(
+    fed: Path, less: Path, none: Path, tmp_path: Path
+) -> None:
+    assert_compared_by_food(fed, less, tmp_path)
+    again = Path(shutil.copytree(none, tmp_path / "again"))
+    assert "food" not in primordia.compare(none, again).outcomes

@@ -10,23 +10,24 @@ from primordia.history.pedigree import genomes
 from primordia.history.rebuilding import rebuild
 from primordia.runs import loop
 from primordia.runs.archive import Archive
-from tests.worlds import HERD, MEADOW, config
+from tests.history.larders import FED
+from tests.worlds import HERD, config
 
 NOTED = {
-    **MEADOW,
-    "brain": {"hidden": 6},
+    **FED,
     "hazard": 0.03,
     "replication": 0.3,
-    "mutation": {"kind": "examples.mutation:SelfAdaptive"},
-    "seeds": 2,
+    "metabolism": {**FED["metabolism"], "store": 1e6},
+    "stop": {"ticks": 300},
 }
+"""The worlds of `larders`, in which none starves."""
 
 
 @pytest.fixture(scope="module")
 def noted(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Make a run whose mutation keeps a number with each birth."""
     run = tmp_path_factory.mktemp("noted") / "run"
-    loop.start(config(NOTED, stop={"ticks": 300}), run)
+    loop.start(config(NOTED), run)
     return run
 
 

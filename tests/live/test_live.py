@@ -138,15 +138,13 @@ def test_a_frame_spells_out_control_characters() -> None:
 
 # Without a terminal.
 
-CARTS = ("CartPole-survival", "--cells", "16")
-
 
 def test_plain_lines_where_there_is_no_terminal(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(Plain, "EVERY", 0.0)
     monkeypatch.setenv("FORCE_COLOR", "1")
-    done = here("run", *CARTS, "--ticks", 2000, "--out", tmp_path / "run")
+    done = here("run", *SMALL[:-1], "--ticks", 2000, "--out", tmp_path / "run")
     assert (done.returncode, done.stderr) == (0, "")
     assert "\x1b" not in done.stdout
     assert re.search(r"^ +\d+\.\d s  tick \d+  alive \d+  births \d+  \S.*/s$", done.stdout, re.M)
@@ -158,6 +156,7 @@ def test_plain_lines_where_there_is_no_terminal(
 # A terminal, a process, and the signal of Ctrl-C.
 
 
+@pytest.mark.slow
 def test_a_terminal_shows_the_strip_and_control_c_saves(tmp_path: Path) -> None:
     """Standard input is a file here, so no keys are named."""
     with opened() as terminal:

@@ -33,6 +33,13 @@ def mill(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return run
 
 
+@pytest.fixture(scope="module")
+def poles(tmp_path_factory: pytest.TempPathFactory) -> primordia.Run:
+    """Make a run of a task whose lives can be drawn."""
+    run = tmp_path_factory.mktemp("poles") / "run"
+    return primordia.run("CartPole-survival", run, cells=16, stop={"ticks": 100})
+
+
 @pytest.fixture
 def fork(mill: Path, tmp_path: Path) -> Path:
     return primordia.load(mill).fork(250, tmp_path / "fork", seed=8).path
@@ -65,18 +72,19 @@ def test_no_file_is_checked_twice(fork: Path, checked: Counter[str]) -> None:
 
 @pytest.mark.parametrize("words", [("replay", "--to", 20), ("evaluate", "--games", 2), "export"])
 def test_a_command_opens_its_run_once(
-    words: str | tuple[object, ...], tmp_path: Path, checked: Counter[str]
+    words: str | tuple[object, ...], poles: primordia.Run, tmp_path: Path, checked: Counter[str]
 ) -> None:
-    made = primordia.run("CartPole-survival", tmp_path / "run", cells=16, stop={"ticks": 100})
     checked.clear()
     name, *options = (words, tmp_path / "genome") if isinstance(words, str) else words
-    done = here(name, made.path, *options)
+    done = here(name, poles.path, *options)
     assert done.returncode == 0, done.stderr
     assert {*checked.values()} == {1}
 
 
-def test_a_call_from_python_opens_its_run_once(tmp_path: Path, checked: Counter[str]) -> None:
-    made = primordia.run("CartPole-survival", tmp_path / "run", cells=16, stop={"ticks": 100})
+def test_a_call_from_python_opens_its_run_once(
+    poles: primordia.Run, tmp_path: Path, checked: Counter[str]
+) -> None:
+    made = primordia.load(poles.path)
     checked.clear()
     oldest = made.oldest()
     oldest.replay(tmp_path / "life.gif", ages=(0, 20))

@@ -30,13 +30,6 @@ def mill(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return run
 
 
-@pytest.fixture(scope="module")
-def poles(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    run = tmp_path_factory.mktemp("poles") / "run"
-    stop = {"ticks": 3000, "until": "none"}
-    return primordia.run("CartPole-survival", run, cells=16, stop=stop).path
-
-
 def arrays(run: Path) -> dict[str, np.ndarray]:
     state = Archive(run).state
     return {name: state[name] for name in state if not name.startswith("tail.")}
@@ -178,12 +171,12 @@ def test_forks_are_compared_where_they_have_time_in_common(mill: Path, tmp_path:
 
 
 @pytest.mark.slow
-def test_another_seed_is_another_future_of_the_same_past(poles: Path, tmp_path: Path) -> None:
-    two = primordia.load(poles).fork(800, tmp_path / "two", seed=5).path
-    again = primordia.load(poles).fork(800, tmp_path / "again", seed=5).path
+def test_another_seed_is_another_future_of_the_same_past(mill: Path, tmp_path: Path) -> None:
+    two = primordia.load(mill).fork(800, tmp_path / "two", seed=5).path
+    again = primordia.load(mill).fork(800, tmp_path / "again", seed=5).path
     assert same(two, again)
-    assert not same(poles, two)
-    here_, there = (living(run, 800) for run in (poles, two))
+    assert not same(mill, two)
+    here_, there = (living(run, 800) for run in (mill, two))
     assert here_ == there
     assert len(here_) > 3
 
@@ -195,28 +188,29 @@ def living(run: Path, at: int) -> set[tuple[int, ...]]:
     return set(zip(*(column[living_then].tolist() for column in columns), strict=True))
 
 
-def test_forks_of_forks_keep_the_promises(poles: Path, tmp_path: Path) -> None:
+def test_forks_of_forks_keep_the_promises(mill: Path, tmp_path: Path) -> None:
     """They can be verified and resumed, and the genomes of all organisms can be rebuilt."""
-    one = primordia.load(poles).fork(500, tmp_path / "one", seed=3, mutation={"scale": 0.02})
-    two = one.fork(1200, tmp_path / "two", seed=4, stop={"ticks": 1500})
-    two.resume(ticks=3000)
+    changes = {"mutation": {"scale": 0.02}, "metabolism": {"gain": 9.0}}
+    one = primordia.load(mill).fork(300, tmp_path / "one", seed=3, **changes)
+    two = one.fork(700, tmp_path / "two", seed=4, stop={"ticks": 900})
+    two.resume(ticks=1500)
     for run in (one, two):
         assert verify(Archive(run.path)) == []
         assert_rebuilt(run.path)
-    straight = one.fork(1200, tmp_path / "straight", seed=4)
+    straight = one.fork(700, tmp_path / "straight", seed=4)
     assert same(straight.path, two.path)
 
 
-def test_a_fork_is_forked_where_it_has_lived(poles: Path, tmp_path: Path) -> None:
-    one = primordia.load(poles).fork(500, tmp_path / "one", seed=3)
+def test_a_fork_is_forked_where_it_has_lived(mill: Path, tmp_path: Path) -> None:
+    one = primordia.load(mill).fork(500, tmp_path / "one", seed=3)
     done = here("fork", one.path, "--at", 499, "--out", tmp_path / "two")
-    says = f"from 500 to 3000; for an earlier tick, fork {poles}"
+    says = f"from 500 to 1500; for an earlier tick, fork {mill}"
     complains(done, 2, "--at 499", says)
     assert here("fork", one.path, "--at", 500, "--out", tmp_path / "two").returncode == 0
 
 
-def test_a_fork_whose_checkpoints_are_lost_starts_again(poles: Path, tmp_path: Path) -> None:
-    fork = primordia.load(poles).fork(500, tmp_path / "fork", seed=3)
+def test_a_fork_whose_checkpoints_are_lost_starts_again(mill: Path, tmp_path: Path) -> None:
+    fork = primordia.load(mill).fork(500, tmp_path / "fork", seed=3)
     before = arrays(fork.path)
     for path in (tmp_path / "fork" / "checkpoints").glob("*/state.npz"):
         path.write_bytes(b"damaged")
@@ -252,22 +246,23 @@ def test_changed_settings_hold_and_others_stay_as_seasons_left_them(
     assert a["replication"] != pytest.approx(0.01)
 
 
-def test_figures_of_a_fork_include_every_organism(poles: Path, tmp_path: Path) -> None:
+def test_figures_of_a_fork_include_every_organism(mill: Path, tmp_path: Path) -> None:
     """Birth numbers of a fork do not start at 0, and have gaps."""
-    fork = primordia.load(poles).fork(1500, tmp_path / "fork", seed=2)
+    fork = primordia.load(mill).fork(750, tmp_path / "fork", seed=2)
     lives = Archive(fork.path).lives
-    assert lives.id[-1] > len(lives)
+    for world in map(lives.of_world, range(2)):
+        assert world.id[-1] > len(world)
+        assert world.rank.tolist() == list(range(len(world)))
     assert sum(map(len, quarters(lives))) == len(lives)
-    assert lives.rank.tolist() == list(range(len(lives)))
     assert len(fork.plot(figures=["survival"], out=tmp_path)) == 2
 
 
-@pytest.mark.parametrize("at", [0, -1, 3001])
+@pytest.mark.parametrize("at", [0, -1, 1501])
 def test_a_fork_before_the_first_tick_or_after_the_last_is_refused(
-    poles: Path, tmp_path: Path, at: int
+    mill: Path, tmp_path: Path, at: int
 ) -> None:
-    done = here("fork", poles, "--at", at, "--out", tmp_path / "fork")
-    complains(done, 2, f"--at {at}", "from 1 to 3000")
+    done = here("fork", mill, "--at", at, "--out", tmp_path / "fork")
+    complains(done, 2, f"--at {at}", "from 1 to 1500")
     assert not (tmp_path / "fork").exists()
 
 
@@ -275,35 +270,35 @@ def test_a_fork_before_the_first_tick_or_after_the_last_is_refused(
     "change",
     [
         ("--cells", 64),
-        ("--seeds", 2),
+        ("--seeds", 3),
         ("--brain.hidden", 8),
         ("--brain.kind", "tests.toys:Twin"),
-        ("--habitat.senses", '["x"]'),
+        ("--habitat.name", "tests.toys:Echo"),
     ],
 )
 def test_settings_that_a_living_world_cannot_change_are_refused(
-    poles: Path, tmp_path: Path, change: tuple
+    mill: Path, tmp_path: Path, change: tuple
 ) -> None:
-    done = here("fork", poles, "--at", 100, *change, "--out", tmp_path / "fork")
+    done = here("fork", mill, "--at", 100, *change, "--out", tmp_path / "fork")
     complains(done, 2, "a fork cannot change")
     assert not (tmp_path / "fork").exists()
 
 
-def test_wrong_input_is_an_error_that_says_why(poles: Path, tmp_path: Path) -> None:
-    complains(here("fork", poles), 2, "--at")
-    complains(here("fork", poles, "--at", 5, "--colour", 3), 2, "there is no setting 'colour'")
-    complains(here("fork", poles, "--at", 5, "--out", poles), 2, "exists already")
+def test_wrong_input_is_an_error_that_says_why(mill: Path, tmp_path: Path) -> None:
+    complains(here("fork", mill), 2, "--at")
+    complains(here("fork", mill, "--at", 5, "--colour", 3), 2, "there is no setting 'colour'")
+    complains(here("fork", mill, "--at", 5, "--out", mill), 2, "exists already")
     complains(here("fork", tmp_path / "no", "--at", 5), 2, "is not a run")
-    fork = primordia.load(poles).fork(5, tmp_path / "fork", stop={"ticks": 6})
+    fork = primordia.load(mill).fork(5, tmp_path / "fork", stop={"ticks": 6})
     done = here("run", fork.path / "config.toml", "--out", tmp_path / "again")
     complains(done, 2, "these are the settings of a fork")
 
 
 def test_a_fork_cut_off_before_it_began_is_an_error_that_says_why(
-    poles: Path, tmp_path: Path
+    mill: Path, tmp_path: Path
 ) -> None:
     """The run was killed after its settings and before its origin was written."""
-    fork = primordia.load(poles).fork(5, tmp_path / "fork", stop={"ticks": 6})
+    fork = primordia.load(mill).fork(5, tmp_path / "fork", stop={"ticks": 6})
     for folder in ("origin", "checkpoints"):
         (fork.path / folder).rename(tmp_path / folder)
     with pytest.raises(InputError, match="fork without a first checkpoint"):

@@ -24,8 +24,15 @@ from tests.worlds import MEADOW, MILL, config
 TASK = "CartPole-survival"
 
 
-@pytest.mark.parametrize("name", tasks())
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.slow if name.startswith("Craftax") else ())
+        for name in tasks()
+    ],
+)
 def test_built_in_tasks_load_and_build(name: str) -> None:
+    """Craftax takes long to trace, and `test_values.py` loads it too."""
     loaded = load(name)
     assert loaded.task == name
     assert loaded.about

@@ -5,9 +5,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import tomli_w
 
 from primordia import config, own_code
-from tests.commands import complains, here
+from tests.commands import complains, flags, here
+from tests.worlds import HOSTED
 
 POND = """
 import sys
@@ -65,13 +67,13 @@ class Still(Mutation):
 HOST = """
 import numpy as np
 
-from primordia.habitats import Discrete, HostHabitat, Outcome
+from primordia.habitats import Continuous, HostHabitat, Outcome
 from primordia.settings.base import Settings
 
 
 class Pond(HostHabitat, Settings):
-    senses_size: int = 1
-    action: Discrete = Discrete(2)
+    senses_size: int = 2
+    action: Continuous = Continuous(1)
     words: int = 1
 
     @property
@@ -82,10 +84,10 @@ class Pond(HostHabitat, Settings):
         self.__dict__["cells"] = cells
 
     def reset(self, cells, words):
-        return np.zeros((len(cells), 1), np.float32)
+        return np.zeros((len(cells), 2), np.float32)
 
     def step(self, action, alive):
-        return np.zeros((self.cells, 1), np.float32), Outcome(np.zeros(self.cells, bool))
+        return np.zeros((self.cells, 2), np.float32), Outcome(np.zeros(self.cells, bool))
 
     def save(self):
         return {"age": np.zeros(self.cells, np.int32)}
@@ -94,21 +96,20 @@ class Pond(HostHabitat, Settings):
         pass
 """
 
-POND_IS, MIND_IS, STILL_IS = {"name": "pond:Pond"}, {"kind": "mind:Mind"}, {"kind": "still:Still"}
+POND_IS = {"name": "pond:Pond"}
 TEXTS: dict[str, tuple[str, dict[str, dict[str, str]]]] = {
     "in JAX": (POND, {"habitat": POND_IS}),
-    "on the host": (HOST, {"habitat": POND_IS, "brain": MIND_IS, "mutation": STILL_IS}),
+    "on the host": (HOST, {"habitat": POND_IS}),
     "brain": (BRAIN, {"brain": {"kind": "pond:Mind"}}),
     "mutation": (MUTATION, {"mutation": {"kind": "pond:Still"}}),
 }
-"""A text of each kind of part that works, and the tables that choose it. Runs in ponds on the host have
-brains and mutations of the user's own too."""
+"""A text of each kind of part that works, and the tables that choose it."""
 
 SENSE, ACTION, WORDS = "return bodies\n", "Discrete = Discrete(2)", "words: int = 1"
 THINK = """return memory, (genome["output"] * senses[:, None]).sum(axis=2)"""
 BLOCKS = """{"output": (outputs, senses)}"""
 INHERIT = "return family.parents, jnp.zeros(len(family.parents), bool)"
-STEP = "return np.zeros((self.cells, 1)"
+STEP = "return np.zeros((self.cells, 2)"
 OF = "(Mutation):\n"
 VERSIONS = """{"pond": "1"}"""
 
@@ -164,23 +165,20 @@ CASES = [(kind, *fault) for kind, faults in FAULTS.items() for fault in faults]
 
 @pytest.fixture
 def pond(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Return the file of a module that no test before has imported, beside a brain and a mutation."""
+    """Return the file of a module that no test before has imported, beside a task of HOSTED's law."""
     monkeypatch.chdir(tmp_path)
-    for name in ("pond", "mind", "still"):
-        sys.modules.pop(name, None)
-        own_code._admitted.sources.pop(name, None)
-    Path("mind.py").write_text(BRAIN)
-    Path("still.py").write_text(MUTATION)
+    sys.modules.pop("pond", None)
+    own_code._admitted.sources.pop("pond", None)
+    Path("hosted.toml").write_text(tomli_w.dumps({"task": "pond", **HOSTED, "habitat": POND_IS}))
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
     return tmp_path / "pond.py"
 
 
 def begun(kind: str) -> Any:
     """Begin a run with the part in the file pond.py."""
-    tables = TEXTS[kind][1].items()
-    parts = [f"--{part}.{key}={name}" for part, own in tables for key, name in own.items()]
-    words = ("--cells", 4, "--ticks", 9, "--quiet", "--out", "run")
-    return here("run", "CartPole-survival", *parts, *words)
+    task = "hosted.toml" if kind == "on the host" else "CartPole-survival"
+    words = ("--ticks", 9, "--quiet", "--out", "run")
+    return here("run", task, *flags(TEXTS[kind][1]), *words)
 
 
 @pytest.mark.parametrize(("kind", "before", "after", "says"), CASES)

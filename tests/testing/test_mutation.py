@@ -199,7 +199,9 @@ class Few(Steady):
         return super().founders(layout, draws)[:, 1:]
 
 
-@pytest.mark.parametrize("mutation", [Contracted(), Rateless()])
+@pytest.mark.parametrize(
+    "mutation", [Contracted(), pytest.param(Rateless(), marks=pytest.mark.slow)]
+)
 def test_the_mutations_without_these_faults(mutation: Mutation) -> None:
     check_mutation(mutation)
 
@@ -211,9 +213,10 @@ def test_the_mutations_without_these_faults(mutation: Mutation) -> None:
         (Lazy(), "instead of 32 are born together"),
         (Deaf(), "the same children for all rates; read rates from `rates`"),
         (Random(), "when it is traced again, .*; draw only from `draws`"),
-        (
+        pytest.param(
             Liar(),
             "organism 0 although it is marked as a copy; return the parent's weights unchanged",
+            marks=pytest.mark.slow,
         ),
         (Cleaner(), "although it is marked as a copy"),
         (Timed(), "has the note 'tick', which cannot be a column of births; use a name other than"),

@@ -87,7 +87,7 @@ def survives(half: Path, through: str, folder: Path, name: str, rng: random.Rand
     return status
 
 
-@pytest.mark.parametrize("name", ["run", "resume", "replay"])
+@pytest.mark.parametrize("name", ["run"])
 def test_a_command_that_is_interrupted_says_one_line_and_loses_nothing(
     half: Path, through: str, tmp_path: Path, name: str
 ) -> None:

@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 from contextlib import chdir, redirect_stderr, redirect_stdout, suppress
+from functools import partial
 from itertools import count
 from pathlib import Path
 from typing import Any
@@ -18,6 +19,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import primordia
+from primordia import cli, interrupts
+from primordia.cli import commands, streams
 from primordia.cli.commands import execute
 from primordia.cli.streams import Printable
 from primordia.errors import InputError
@@ -160,23 +163,53 @@ def test_the_python_interface_refuses_names_that_no_file_can_have(half: Path) ->
 LOCALE = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
 
 
-def test_files_and_streams_are_in_utf_8_whatever_the_locale(tmp_path: Path) -> None:
+def test_files_and_streams_are_in_utf_8_whatever_the_locale_and_what_is_closed(
+    tmp_path: Path,
+) -> None:
+    """Standard input and the stream of messages are closed, and no file takes their place."""
     file, run = tmp_path / "mine.toml", tmp_path / "run"
     text = OWN.replace('"T"', '"水\\u001b"').replace('"A"', '"é"')
     file.write_text(text, encoding="utf-8")
-    words = ("run", file, "--ticks", "50", "--out", run)
-    done = subprocess.run(
-        [*COMMAND, *map(str, words)],
-        env=environment() | LOCALE,
-        capture_output=True,
-        check=False,
-    )
+    words = [*COMMAND, "run", str(file), "--ticks", "50", "--out", str(run)]
+    shell, variables = ["sh", "-c", '"$@" <&- 2>&-', "sh", *words], environment() | LOCALE
+    done = subprocess.run(shell, env=variables, capture_output=True, check=False)
     assert (done.returncode, done.stderr) == (0, b"")
     assert done.stdout.decode().startswith("水\\x1b: 1 world")
     assert f"primordia plot {run}\n" in done.stdout.decode()
     assert here("info", run).returncode == 0
 
 
+OPENED = """
+import os, sys
+from primordia.cli import open_streams
+open_streams()
+with open(sys.argv[1], "w") as file:
+    print(file.fileno(), *map(os.get_inheritable, range(3)), file=file)
+"""
+"""A program that opens a file and writes its number into it, and what it gives to workers."""
+
+
+@pytest.mark.parametrize("closed", ["<&- >&- 2>&-", ">&-"])
+def test_closed_streams_are_opened(closed: str, tmp_path: Path) -> None:
+    shell = ["sh", "-c", f'"$@" {closed}', "sh", sys.executable, "-c", OPENED, tmp_path / "file"]
+    done = subprocess.run(shell, env=environment(), check=False)
+    assert done.returncode == 0
+    assert (tmp_path / "file").read_text() == "3 True True True\n"
+
+
+def test_a_command_first_opens_what_is_closed(monkeypatch: pytest.MonkeyPatch) -> None:
+    called: list[str] = []
+    for module, name in (
+        (cli, "open_streams"), (interrupts, "end_commands_at_once"), (streams, "prepare"),
+        (commands, "execute"),
+    ):  # fmt: skip
+        monkeypatch.setattr(module, name, partial(called.append, name))
+    with pytest.raises(SystemExit):
+        cli.main()
+    assert called == ["open_streams", "end_commands_at_once", "prepare", "execute"]
+
+
+@pytest.mark.slow
 def test_streams_that_are_closed_at_the_start_are_not_taken_by_files(
     half: Path, through: str, tmp_path: Path
 ) -> None:
