@@ -23,7 +23,12 @@ def test_a_brain_has_its_own_settings_with_defaults_filled_in() -> None:
     assert config(MEADOW).brain == {"kind": "recurrent", "hidden": 32, **common}
     assert config(MEADOW, brain={"kind": "linear"}).brain == {"kind": "linear", **common}
     other = config(MEADOW, brain={"kind": "tests.toys:Sliding", "width": 1})
-    assert other.brain == {"kind": "tests.toys:Sliding", "width": 1, "channels": 3}
+    assert other.brain == {
+        "kind": "tests.toys:Sliding",
+        "efference": False,
+        "width": 1,
+        "channels": 3,
+    }
     assert tomllib.loads(other.to_toml())["brain"] == other.brain
 
 
