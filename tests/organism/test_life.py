@@ -22,7 +22,8 @@ from primordia.random.wide import wide
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.toys import Mirror
-from tests.worlds import MEADOW, MILL, config
+from tests.organism.conftest import CALM
+from tests.worlds import MEADOW, MILLS, config
 
 MIRROR = pytest.param("mirror", marks=pytest.mark.slow)
 """Habitats on the host are also lived in again by tests of simulators, which share a law."""
@@ -33,8 +34,8 @@ def mirror(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Make the same run with the habitat on the host."""
     run = tmp_path_factory.mktemp("mirror") / "run"
     habitat = {"name": "tests.toys:Mirror", "inner": "mill"}
-    changed = {"habitat": habitat, "seeds": 2, "seed": 5, "stop": {"ticks": 700}}
-    loop.start(config({**MILL, **changed}), run)
+    changed = {**CALM, "habitat": habitat, "seed": 5, "stop": {"ticks": 700}}
+    loop.start(config({**MILLS, **changed}), run)
     return run
 
 
@@ -225,7 +226,7 @@ def test_a_policy_gives_continuous_actions(mill: Path) -> None:
     actions = [policy(senses) for senses in seen.senses[:200]]
     assert {(action.shape, action.dtype.name) for action in actions} == {((2,), "float32")}
     noise = seen.action[:200] - np.array(actions)
-    assert noise.std() == pytest.approx(MILL["motor"]["sd"], rel=5 / np.sqrt(2 * noise.size))
+    assert noise.std() == pytest.approx(MILLS["motor"]["sd"], rel=5 / np.sqrt(2 * noise.size))
     assert np.abs(np.corrcoef(noise.T)[0, 1]) < 5 / np.sqrt(len(noise))
     assert np.array(actions).std() > 0.01
     policy.reset()
