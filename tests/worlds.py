@@ -42,7 +42,7 @@ MILLS: dict[str, Any] = {
     "hazard": 0.02,
     "brain": {"hidden": 2},
     "placement": {"topology": "torus4", "rule": "replacing"},
-    "replication": 0.06,
+    "replication": 0.08,
     "mutation": {**MILL["mutation"], "blocks": {"output": {"scale": 0.1}}},
     "sample_every": 10,
     "seasons": [

@@ -36,8 +36,6 @@ def ratchet(setting: str, when: str, above: float, factor: float, every: int) ->
 
 
 RATCHETS = MILLS["seasons"]
-CHANCE = 0.08
-"""The chance of replication before the seasons change it."""
 SETTINGS = {
     "metabolism.gain": "metabolism.gain",
     "replication": "replication",
@@ -54,7 +52,7 @@ def mills(request: pytest.FixtureRequest) -> Lived:
     The counts of ticks and births start at 0, or cross 2^32 soon.
     """
     start = request.param
-    return Lived(config(MILLS, replication=CHANCE), last_tick(start[0]), start=start)
+    return Lived(config(MILLS), last_tick(start[0]), start=start)
 
 
 def last_tick(first: int) -> int:
@@ -71,7 +69,7 @@ def expected_climate(rows: dict[str, np.ndarray]) -> list[dict[str, np.float32]]
     """Return what the seasons make of the populations in the rows, which include every look."""
     now = {
         "metabolism.gain": np.float32(3.0),
-        "replication": np.float32(CHANCE),
+        "replication": np.float32(MILLS["replication"]),
         "mutation.scale": np.float32(0.2),
         "mutation.blocks.output.scale": np.float32(0.1),
     }

@@ -11,8 +11,8 @@ from primordia.organism.reliving.on_host import LifeOnHost
 from primordia.runs import loop
 from tests.worlds import MILLS, config
 
-CALM = {"hazard": 0.002, "replication": 0.025}
-"""Chances with which organisms of MILLS live longer."""
+CALM = {"hazard": 0.002}
+"""A chance of accidents with which organisms of MILLS live longer."""
 CLOCKED = {"name": "tests.toys:Clocked", "inner": "mill"}
 
 

@@ -193,8 +193,10 @@ def test_a_brain_whose_outputs_are_not_finite_ends_its_game_in_its_first_tick(
 def test_no_game_depends_on_those_that_leave_the_loop(
     players: Players, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Few games last; the others leave the loop on the way, with what is frozen."""
+    """Few players have a large store, so the other games leave the loop, with what is frozen."""
     monkeypatch.setattr(in_jax, "FEWEST", 1)
+    store = np.geomspace(5, 75, len(players.genomes)).astype(np.float32)
+    unequal = players._replace(rates=players.rates._replace(store=store))
     sizes: list[int] = []
     left = in_jax._left
 
@@ -206,6 +208,6 @@ def test_no_game_depends_on_those_that_leave_the_loop(
     games = []
     for factor in (2, 10**6):
         monkeypatch.setattr(in_jax, "FEWER", factor)
-        games.append(play(players, 3, 150, frozen=some_frozen(players)))
+        games.append(play(unequal, 3, 150, frozen=some_frozen(players)))
     same(*games)
     assert len(set(sizes)) > 1

@@ -19,14 +19,11 @@ from primordia.runs.fork import fork
 from primordia.runs.manifest import Progress
 from tests.commands import complains, here
 from tests.phylogeny.forests import ancestry, frame, parents_of, phyloframe, phylotrack
-from tests.worlds import MILL, config
+from tests.worlds import MILLS, config
 
 WORLDS: dict[str, Any] = {
-    **MILL,
-    "hazard": 0.02,
-    "replication": 0.2,
+    **MILLS,
     "seed": 5,
-    "seeds": 2,
 }
 CLOCKED: dict[str, Any] = {
     "task": "clocked",

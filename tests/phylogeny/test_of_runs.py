@@ -22,22 +22,20 @@ from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
 from tests.synthetic import world_of
-from tests.worlds import MEADOW, config
+from tests.worlds import MEADOW, RING, config
 
 LIVES: dict[str, Any] = {
-    **MEADOW,
-    "brain": {"hidden": 6},
-    "hazard": 0.03,
+    **RING,
+    "hazard": 0.06,
     "replication": 0.3,
     "mutation": {"probability": 0.6, "blocks": {"output": {"scale": 0.5}}},
-    "seeds": 2,
 }
 MATES: dict[str, Any] = {**LIVES, "recombination": {"probability": 0.8}}
 
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Make a run of two worlds whose organisms mutate more often than not."""
+    """Make a run of four worlds whose organisms mutate more often than not."""
     where = tmp_path_factory.mktemp("descent") / "run"
     loop.start(config(LIVES, stop={"ticks": 300}), where)
     return where
@@ -192,9 +190,11 @@ def test_the_commands_print_tables_and_json_and_draw(run: Path, tmp_path: Path) 
     assert by_number == told
     done = here("lineages", run, "--world", "all", "--out", tmp_path)
     assert done.returncode == 0, done.stderr
-    assert done.stdout.count("lines founded at tick") == 2
+    assert done.stdout.count("lines founded at tick") == 4
     assert {each.name for each in tmp_path.iterdir()} == {
-        f"{name}.{kind}" for name in ("ancestors", "lines-0", "lines-1") for kind in ("png", "svg")
+        f"{name}.{kind}"
+        for name in ("ancestors", *(f"lines-{world}" for world in range(4)))
+        for kind in ("png", "svg")
     }
     of_all = json.loads(here("lineages", run, "--world", "all", "--json").stdout)
     (of_one,) = json.loads(here("lineages", run, "--world", 1, "--json").stdout)
@@ -227,7 +227,7 @@ def test_the_last_tick_is_enough(run: Path) -> None:
     [
         (["ancestors", "RUN", 10**9], "no organism 1000000000 was born in world 0"),
         (["ancestors", "RUN", "--world", 7], "there is no world 7"),
-        (["lineages", "RUN", "--world", 2], "there is no world 2; the worlds are 0 to 1"),
+        (["lineages", "RUN", "--world", 4], "there is no world 4; the worlds are 0 to 3"),
         (
             ["lineages", "RUN", "--world", "both"],
             "'both' is neither the number of a world nor `all`",
@@ -266,7 +266,7 @@ def test_without_heredity_lines_go_on_and_a_line_of_descent_does_not(tmp_path: P
     """The control's children are random founders that have a mother; lines are hers, genomes are not."""
     loop.start(config({**LIVES, "inheritance": "founder"}, stop={"ticks": 200}), tmp_path / "run")
     assert len(primordia.load(tmp_path / "run").ancestors().line) == 1
-    (first, _) = primordia.load(tmp_path / "run").lineages()
+    (first, *_) = primordia.load(tmp_path / "run").lineages()
     assert first.shares[-1].max() > 0.2
 
 
