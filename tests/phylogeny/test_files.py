@@ -244,6 +244,7 @@ def test_the_line_of_one_organism_is_written(family: Path) -> None:
     assert set(line["id"].to_pylist()) == ancestry(parents, {last})
 
 
+@pytest.mark.slow
 def test_children_of_two_parents_list_both(tmp_path: Path) -> None:
     run = live(tmp_path / "run", 300, recombination={"probability": 0.7})
     rows = lineage(run)
@@ -278,6 +279,7 @@ def test_children_of_two_parents_list_both(tmp_path: Path) -> None:
     assert dict(zip(label, label[tree["ancestor_id"]], strict=True)) == ancestor_id
 
 
+@pytest.mark.slow
 def test_a_fork_that_begins_to_recombine_lists_mates_of_its_own(
     family: Path, tmp_path: Path
 ) -> None:
