@@ -15,10 +15,16 @@ from primordia.law.placement import Placement
 from primordia.random.wide import Wide
 from tests.chance import even
 from tests.chronicle import reach
+from tests.law.turning import LIGHTLY
 
 TOPOLOGIES = ["ring", "torus4", "torus8", "well-mixed"]
 RULES = ["blind", "empty-only", "replacing"]
-QUICK = [*product(["ring"], RULES), ("torus4", "replacing"), ("torus8", "blind"), ("well-mixed", "empty-only")]
+QUICK = [
+    *product(["ring"], RULES),
+    ("torus4", "replacing"),
+    ("torus8", "blind"),
+    ("well-mixed", "empty-only"),
+]
 """Each topology and each rule. A tick of well-mixed worlds with the rule replacing has a test of its own."""
 each_kind = pytest.mark.parametrize(
     ("topology", "rule"),
@@ -40,7 +46,7 @@ def compiled(topology: str, rule: str) -> Callable:
         parents = placement.parents(lambda number: Wide(*words[number]), wants, occupied)
         return parents, placement.room(occupied)
 
-    return jax.jit(place)
+    return jax.jit(place, compiler_options=LIGHTLY)
 
 
 def one_after_another(

@@ -16,26 +16,33 @@ from primordia.errors import InputError
 from primordia.history.pedigree import genomes
 from primordia.history.rebuilding import changes
 from primordia.law.world import BirthCause
+from primordia.phylogeny import drift, slopes
 from primordia.phylogeny.descent import Ancestors
 from primordia.phylogeny.sweeps import Sweep
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
 from tests.synthetic import world_of
-from tests.worlds import MEADOW, RING, config
+from tests.worlds import MEADOW, MILLS, config
 
 LIVES: dict[str, Any] = {
-    **RING,
-    "hazard": 0.06,
-    "replication": 0.3,
-    "mutation": {"probability": 0.6, "blocks": {"output": {"scale": 0.5}}},
+    **MILLS,
+    "replication": 0.12,
+    "mutation": {**MILLS["mutation"], "probability": 0.6},
 }
 MATES: dict[str, Any] = {**LIVES, "recombination": {"probability": 0.8}}
 
 
+@pytest.fixture(autouse=True)
+def _few_shadows(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Draw as few shadows of each world and line as a large world has."""
+    monkeypatch.setattr("primordia.phylogeny.drift.MOST", drift.FEWEST)
+    monkeypatch.setattr("primordia.phylogeny.slopes.MOST", slopes.FEWEST)
+
+
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Make a run of four worlds whose organisms mutate more often than not."""
+    """Make a run of two worlds whose organisms mutate more often than not."""
     where = tmp_path_factory.mktemp("descent") / "run"
     loop.start(config(LIVES, stop={"ticks": 300}), where)
     return where
@@ -190,11 +197,9 @@ def test_the_commands_print_tables_and_json_and_draw(run: Path, tmp_path: Path) 
     assert by_number == told
     done = here("lineages", run, "--world", "all", "--out", tmp_path)
     assert done.returncode == 0, done.stderr
-    assert done.stdout.count("lines founded at tick") == 4
+    assert done.stdout.count("lines founded at tick") == 2
     assert {each.name for each in tmp_path.iterdir()} == {
-        f"{name}.{kind}"
-        for name in ("ancestors", *(f"lines-{world}" for world in range(4)))
-        for kind in ("png", "svg")
+        f"{name}.{kind}" for name in ("ancestors", "lines-0", "lines-1") for kind in ("png", "svg")
     }
     of_all = json.loads(here("lineages", run, "--world", "all", "--json").stdout)
     (of_one,) = json.loads(here("lineages", run, "--world", 1, "--json").stdout)
@@ -227,7 +232,7 @@ def test_the_last_tick_is_enough(run: Path) -> None:
     [
         (["ancestors", "RUN", 10**9], "no organism 1000000000 was born in world 0"),
         (["ancestors", "RUN", "--world", 7], "there is no world 7"),
-        (["lineages", "RUN", "--world", 4], "there is no world 4; the worlds are 0 to 3"),
+        (["lineages", "RUN", "--world", 2], "there is no world 2; the worlds are 0 to 1"),
         (
             ["lineages", "RUN", "--world", "both"],
             "'both' is neither the number of a world nor `all`",

@@ -30,7 +30,7 @@ from tests.phylogeny.forests import (
     phylotrack,
 )
 
-DEEP = 100_000
+DEEP = 20_000
 
 
 def text_of(whole: Phylogeny) -> str:
@@ -115,6 +115,7 @@ def test_collapsing_keeps_what_branches_lives_or_founds(worlds: list) -> None:
     assert parents_of(kept) == expected
 
 
+@pytest.mark.slow
 @given(FORESTS)
 def test_collapsing_the_dead_is_what_phyloframe_does(worlds: list) -> None:
     dead = [[(*organism[:2], False) for organism in world] for world in worlds]
@@ -138,6 +139,7 @@ def test_trees_are_read_back_by_dendropy(worlds: list) -> None:
         assert length == born[number] - (0 if up is None else born[up])
 
 
+@pytest.mark.slow
 @given(FORESTS)
 def test_trees_are_those_of_the_table_in_the_converter(worlds: list) -> None:
     """Its branches have the same lengths: a root's is the time of its birth."""
