@@ -25,7 +25,7 @@ QUICK = [
     ("torus8", "blind"),
     ("well-mixed", "empty-only"),
 ]
-"""Each topology and each rule. A tick of well-mixed worlds with the rule replacing has a test of its own."""
+"""Each topology and each rule. A tick of well-mixed worlds that replace has a test of its own."""
 each_kind = pytest.mark.parametrize(
     ("topology", "rule"),
     [

@@ -56,7 +56,7 @@ def test_a_model_acts_tick_for_tick_as_the_policy_does(name: str, tmp_path: Path
 
 def test_a_discrete_action_is_its_number(poles: Path, tmp_path: Path) -> None:
     run = primordia.load(poles)
-    organism = run.oldest()
+    organism = run.oldest(0)
     done = here("export", run.path, "--organism", organism.id, tmp_path / "brain.onnx")
     assert done.returncode == 0, done.stderr
     model = session(tmp_path / "brain.onnx")
