@@ -24,8 +24,9 @@ QUICK = [
     ("torus4", "replacing"),
     ("torus8", "blind"),
     ("well-mixed", "empty-only"),
+    ("well-mixed", "replacing"),
 ]
-"""Each topology and each rule. A tick of well-mixed worlds that replace has a test of its own."""
+"""Each topology and each rule. Only well-mixed worlds look for a cell in another way with each rule."""
 each_kind = pytest.mark.parametrize(
     ("topology", "rule"),
     [
