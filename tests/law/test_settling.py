@@ -17,6 +17,7 @@ from primordia.law.tick import no_fates
 from primordia.law.world import World
 from primordia.mutations.contract import Moments
 from primordia.random.wide import to_host, wide
+from tests.law.turning import LIGHTLY
 from tests.worlds import MEADOW, begun, law_of
 
 W, N = 3, 4
@@ -60,7 +61,10 @@ def filled(world: World, empty: Any = ()) -> World:
 @cache
 def settling(law: Law) -> Any:
     lists, none = log.empty(law), no_fates(law)
-    return jax.jit(lambda world, ticks, running: settle(law, world, lists, none, ticks, running))
+    return jax.jit(
+        lambda world, ticks, running: settle(law, world, lists, none, ticks, running),
+        compiler_options=LIGHTLY,
+    )
 
 
 _note_samples = jax.jit(note_samples, static_argnums=0)

@@ -3,6 +3,7 @@
 import sys
 from pathlib import Path
 
+import jax
 import numpy as np
 import onnxruntime
 import pytest
@@ -15,6 +16,15 @@ from tests.commands import complains, here
 from tests.worlds import MILL, config
 
 TICKS = 50
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _examples() -> None:
+    """Load jax2onnx with cheap random numbers. Its examples draw some, which compile for seconds."""
+    with jax.default_prng_impl("unsafe_rbg"):
+        import jax2onnx
+
+        jax2onnx.to_onnx(lambda senses: senses, [(1,)])
 
 
 def law_of(**values: object) -> Law:
@@ -46,7 +56,7 @@ def test_a_model_acts_tick_for_tick_as_the_policy_does(name: str, tmp_path: Path
 
 def test_a_discrete_action_is_its_number(poles: Path, tmp_path: Path) -> None:
     run = primordia.load(poles)
-    organism = run.oldest()
+    organism = run.oldest(0)
     done = here("export", run.path, "--organism", organism.id, tmp_path / "brain.onnx")
     assert done.returncode == 0, done.stderr
     model = session(tmp_path / "brain.onnx")

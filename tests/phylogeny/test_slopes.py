@@ -49,7 +49,7 @@ def test_shares_of_5_and_of_95_percent_are_still_measured(living: int) -> None:
     assert between(counts, living).tolist() == [False, False, True, True, True, True, False, False]
 
 
-SIZE, BIRTHS = 40, 1600
+SIZE, BIRTHS = 24, 600
 
 
 @pytest.fixture
