@@ -186,8 +186,9 @@ def test_a_habitat_on_the_host_is_closed_after_a_life(
     """It is closed after a whole life or a part of it; each life has its own habitat."""
     closed: list[Mirror] = []
     monkeypatch.setattr(Mirror, "close", lambda self: closed.append(self), raising=False)
-    oldest = primordia.load(mirror).oldest()
-    life = RelivedLife.of(oldest.run, oldest.id)
+    run = Archive(mirror)
+    row = int(np.argmax(run.lives.lifespan))
+    life = RelivedLife.of(run, run.lives.id[row], run.lives.world[row])
     one: Any = life.stretches()
     other = life.stretches()
     first = next(other)

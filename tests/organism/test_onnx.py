@@ -2,6 +2,7 @@
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import jax
 import numpy as np
@@ -20,8 +21,16 @@ TICKS = 50
 
 @pytest.fixture(autouse=True, scope="module")
 def _examples() -> None:
-    """Load jax2onnx with cheap random numbers. Its examples draw some, which compile for seconds."""
-    with jax.default_prng_impl("unsafe_rbg"):
+    """Load jax2onnx without random numbers. Its examples draw some, which compile for seconds."""
+
+    def zeros(
+        key: jax.Array, shape: tuple[int, ...] = (), dtype: Any = float, **_: Any
+    ) -> jax.Array:
+        return jax.numpy.asarray(np.zeros(shape, dtype))
+
+    with pytest.MonkeyPatch.context() as patch, jax.default_prng_impl("unsafe_rbg"):
+        for kind in ("uniform", "normal"):
+            patch.setattr(jax.random, kind, zeros)
         import jax2onnx
 
         jax2onnx.to_onnx(lambda senses: senses, [(1,)])

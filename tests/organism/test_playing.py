@@ -54,9 +54,8 @@ def players(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFac
 
 
 @pytest.fixture(autouse=True)
-def _loops_of_one_size(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Play in loops of one size, so that few are compiled, and of few ticks, since games are short."""
-    monkeypatch.setattr(in_jax, "FEWEST", 64)
+def _short_loops(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Play in loops of few ticks, since games are short."""
     monkeypatch.setattr(in_jax, "STRETCH", 16)
 
 

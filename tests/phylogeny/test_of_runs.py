@@ -167,7 +167,7 @@ def test_changes_before_a_fork_are_left_out_if_the_code_there_is_untrusted(
 def test_lines_in_a_fork_are_founded_at_it(forked: Path) -> None:
     (lines,) = primordia.load(forked).lineages(world=1)
     assert lines.ticks[0] == 200
-    assert sorted(lines.lives.id[lines.founders]) == sorted(lines.lives.id[lines.lives.entered > 0])
+    assert sorted(lines.lives.id[lines.founders]) == sorted(lines.lives.id[lines.lives.born <= 200])
 
 
 def test_mutations_of_untrusted_code_are_left_out(
