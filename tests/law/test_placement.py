@@ -15,7 +15,6 @@ from primordia.law.placement import Placement
 from primordia.random.wide import Wide
 from tests.chance import even
 from tests.chronicle import reach
-from tests.law.turning import LIGHTLY
 
 TOPOLOGIES = ["ring", "torus4", "torus8", "well-mixed"]
 RULES = ["blind", "empty-only", "replacing"]
@@ -47,7 +46,7 @@ def compiled(topology: str, rule: str) -> Callable:
         parents = placement.parents(lambda number: Wide(*words[number]), wants, occupied)
         return parents, placement.room(occupied)
 
-    return jax.jit(place, compiler_options=LIGHTLY)
+    return jax.jit(place)
 
 
 def one_after_another(

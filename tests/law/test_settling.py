@@ -17,7 +17,6 @@ from primordia.law.tick import no_fates
 from primordia.law.world import World
 from primordia.mutations.contract import Moments
 from primordia.random.wide import to_host, wide
-from tests.law.turning import LIGHTLY
 from tests.worlds import MEADOW, begun, law_of
 
 W, N = 3, 4
@@ -61,10 +60,7 @@ def filled(world: World, empty: Any = ()) -> World:
 @cache
 def settling(law: Law) -> Any:
     lists, none = log.empty(law), no_fates(law)
-    return jax.jit(
-        lambda world, ticks, running: settle(law, world, lists, none, ticks, running),
-        compiler_options=LIGHTLY,
-    )
+    return jax.jit(lambda world, ticks, running: settle(law, world, lists, none, ticks, running))
 
 
 _note_samples = jax.jit(note_samples, static_argnums=0)

@@ -52,11 +52,7 @@ def turned(
     return Turned(organisms, worlds, np.asarray(newborn), births, deaths)
 
 
-LIGHTLY = {"xla_backend_optimization_level": 0}
-"""Options under which large functions that are called a few times compile faster."""
-
-
-@partial(jax.jit, static_argnums=0, compiler_options=LIGHTLY)
+@partial(jax.jit, static_argnums=0)
 def _turned(law: Law, world: World, running: Array, wants: Array, cause: Array) -> tuple:
     keys = birth_keys(law, world.worlds)
     return turnover(law, world, log.empty(law), running, wants, cause, keys)
