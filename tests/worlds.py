@@ -35,6 +35,31 @@ MILL: dict[str, Any] = {
     ],
 }  # fmt: skip
 
+MILLS: dict[str, Any] = {
+    **MILL,
+    "cells": 16,
+    "seeds": 2,
+    "hazard": 0.02,
+    "brain": {"hidden": 2},
+    "placement": {"topology": "torus4", "rule": "replacing"},
+    "replication": 0.08,
+    "mutation": {**MILL["mutation"], "blocks": {"output": {"scale": 0.1}}},
+    "sample_every": 10,
+    "seasons": [
+        {"kind": "ratchet", "setting": "metabolism.gain", "when": "mean_age", "above": 12.0,
+         "factor": 0.93, "every": 20},
+        {"kind": "ratchet", "setting": "replication", "when": "saturation", "above": 0.7,
+         "factor": 0.9, "every": 30},
+        {"kind": "ratchet", "setting": "mutation.scale", "when": "food", "above": 0.0,
+         "factor": 1.25, "every": 40},
+        {"kind": "ratchet", "setting": "mutation.blocks.output.scale", "when": "mean_age",
+         "above": 8.0, "factor": 0.5, "every": 50},
+        {"kind": "schedule", "setting": "metabolism.gain", "at": 205, "value": 2.5},
+    ],
+}  # fmt: skip
+"""Two worlds in which organisms die in every way: hunger, broken wheels, accidents, neighbours. All
+kinds of seasons change their climate."""
+
 CLOCKWORK: dict[str, Any] = {
     **MEADOW,
     "brain": {"kind": "feed-forward", "hidden": 1},

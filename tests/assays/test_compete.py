@@ -72,6 +72,7 @@ def test_the_longer_lived_takes_over_on_the_other_side(sides: tuple[Subjects, Su
     assert compete(*sides[::-1], worlds=6, ticks=400).won == (0, 6)
 
 
+@pytest.mark.slow
 def test_half_of_the_cells_begin_with_either(sides: tuple[Subjects, Subjects]) -> None:
     found = compete(*sides, worlds=6, ticks=100)
     assert found.tick[0] == 0

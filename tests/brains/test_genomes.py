@@ -21,7 +21,7 @@ from primordia.runs import loop
 from primordia.runs.archive import Archive
 from primordia.runs.verify import verify
 from tests.commands import complains, here
-from tests.worlds import MEADOW, config, merged
+from tests.worlds import MEADOW, RING, config, merged
 
 LAYOUT = Recurrent(hidden=6).layout(2, 2)
 SMALL = {"brain": {"hidden": 6}, "hazard": 0.03, "replication": 0.3, "stop": {"ticks": 300}}
@@ -63,6 +63,14 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> primordia.Run:
     return primordia.load(folder / "run")
 
 
+@pytest.fixture(scope="module")
+def ring(tmp_path_factory: pytest.TempPathFactory) -> primordia.Run:
+    """Worlds whose founders have random genomes."""
+    folder = tmp_path_factory.mktemp("ring") / "run"
+    loop.start(config(RING, replication=0.3, hazard=0.03, stop={"ticks": 100}), folder)
+    return primordia.load(folder)
+
+
 @pytest.mark.slow
 def test_founders_of_a_run_have_the_genomes_of_its_ancestors(
     run: primordia.Run, tmp_path: Path
@@ -96,16 +104,16 @@ def test_genomes_that_descend_from_ancestors_are_rebuilt_by_the_same_code(
 
 
 def test_organisms_are_exported_in_the_given_order_or_the_longest_life(
-    run: primordia.Run, tmp_path: Path
+    ring: primordia.Run, tmp_path: Path
 ) -> None:
-    two, one = "two", "one"
-    done = here("export", run.path, "--organism", 5, "--organism", 30, tmp_path / two)
+    two, one, layout = "two", "one", ring.opened().layout
+    done = here("export", ring.path, "--organism", 5, "--organism", 30, tmp_path / two)
     assert (done.returncode, done.stdout) == (0, f"{tmp_path / two}: organism 5, 30\n")
-    assert here("export", run.path, tmp_path / one).returncode == 0
-    for file, organisms in ((two, (5, 30)), (one, (run.oldest().id,))):
-        found = genomes.read([str(tmp_path / file)], LAYOUT)
+    assert here("export", ring.path, tmp_path / one).returncode == 0
+    for file, organisms in ((two, (5, 30)), (one, (ring.oldest(0).id,))):
+        found = genomes.read([str(tmp_path / file)], layout)
         np.testing.assert_array_equal(
-            found, [run.organism(organism).genome() for organism in organisms]
+            found, [ring.organism(organism).genome() for organism in organisms]
         )
 
 
@@ -164,10 +172,10 @@ def test_ancestors_are_looked_for_beside_the_settings_file(tmp_path: Path) -> No
 
 
 def test_wrong_input_to_export_is_an_error_that_says_why(
-    run: primordia.Run, tmp_path: Path
+    ring: primordia.Run, tmp_path: Path
 ) -> None:
     complains(here("run", "CartPole-survival", "--ancestor", tmp_path / "no"), 2, "no genome file")
-    done = here("export", run.path, "--organism", 99999, tmp_path / "x.safetensors")
+    done = here("export", ring.path, "--organism", 99999, tmp_path / "x.safetensors")
     complains(done, 2, "no organism 99999 was born in world 0")
-    complains(here("export", run.path, "--world", 3, tmp_path / "x"), 2, "no world 3")
-    complains(here("export", run.path, tmp_path / "no" / "x"), 1, "cannot be written")
+    complains(here("export", ring.path, "--world", 4, tmp_path / "x"), 2, "no world 4")
+    complains(here("export", ring.path, tmp_path / "no" / "x"), 1, "cannot be written")

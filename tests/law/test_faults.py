@@ -46,7 +46,8 @@ class EndingOnHost(OnHost):
         super().__init__(Ending(**options))
 
 
-@pytest.mark.parametrize("kind", ["Ending", pytest.param("EndingOnHost", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["Ending", "EndingOnHost"])
 def test_the_gravest_reason_to_die_is_the_cause(kind: str) -> None:
     """The last organisms have a store that is empty in the tick of the limit; hunger comes first."""
     still = {

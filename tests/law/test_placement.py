@@ -18,7 +18,21 @@ from tests.chronicle import reach
 
 TOPOLOGIES = ["ring", "torus4", "torus8", "well-mixed"]
 RULES = ["blind", "empty-only", "replacing"]
-ALL = list(product(TOPOLOGIES, RULES))
+QUICK = [
+    *product(["ring"], RULES),
+    ("torus4", "replacing"),
+    ("torus8", "blind"),
+    ("well-mixed", "empty-only"),
+    ("well-mixed", "replacing"),
+]
+"""Each topology and each rule. Only well-mixed worlds look for a cell in another way with each rule."""
+each_kind = pytest.mark.parametrize(
+    ("topology", "rule"),
+    [
+        pytest.param(*pair, marks=() if pair in QUICK else pytest.mark.slow)
+        for pair in product(TOPOLOGIES, RULES)
+    ],
+)
 W, N = 12_000, 12  # a torus of 3 x 4
 ROUNDS = N + 1
 
@@ -67,7 +81,7 @@ def words(seed: int) -> np.ndarray:
     return np.random.default_rng(seed).integers(0, 2**32, (ROUNDS, 2, W, N), dtype=np.uint32)
 
 
-@pytest.mark.parametrize(("topology", "rule"), ALL)
+@each_kind
 def test_placing_all_at_once_equals_placing_one_by_one(topology: str, rule: str) -> None:
     """Each world is filled to a random share. In every second world many priorities are equal. In world 5
     no organism wants a child.
@@ -117,7 +131,7 @@ def test_many_contenders_win_equally_often() -> None:
     assert even(np.delete(winners, 3))
 
 
-@pytest.mark.parametrize(("topology", "rule"), ALL)
+@each_kind
 def test_every_direction_is_equally_likely(topology: str, rule: str) -> None:
     """Each of many worlds has one organism, with one of its neighbours occupied."""
     home, other = 5, 4

@@ -1,6 +1,7 @@
 """Worlds of many kinds, each checked against the rules when its history is made."""
 
 from collections import Counter
+from functools import cache
 from typing import Any
 
 import jax
@@ -12,7 +13,7 @@ from primordia.random.wide import happened, to_host
 from tests.chance import binomial
 from tests.chronicle import History
 from tests.toys import Meadow
-from tests.worlds import MEADOW, Lived, config
+from tests.worlds import MEADOW, MILLS, Lived, config
 
 KEPT, EVERY = 4, 3
 
@@ -40,6 +41,7 @@ HISTORIES: dict[str, dict[str, Any]] = {
         mutation={"kind": "calibrated", "probability": 1.0, "remembered": KEPT, "every": EVERY},
         brain={"hidden": 3},
     ),
+    "mills": {**MILLS, "replication": 0.12},
     "control": placed(
         "well-mixed",
         "replacing",
@@ -52,27 +54,28 @@ HISTORIES: dict[str, dict[str, Any]] = {
 }
 """Worlds that differ in every rule. Each organism of the first starves in the tick in which it is old."""
 TICKS = 400
+CONTROL = pytest.param("control", marks=pytest.mark.slow)
+every_world = pytest.mark.parametrize("name", ["torus8", "mills", CONTROL])
 
 
-@pytest.fixture(scope="module")
-def histories() -> dict[str, list[History]]:
-    """Make the histories of all worlds, which checks them against the rules."""
-    made = {name: Lived(config(MEADOW, **values), TICKS) for name, values in HISTORIES.items()}
-    return {name: [History(run, world) for world in range(3)] for name, run in made.items()}
+@cache
+def histories(name: str) -> list[History]:
+    """Make the histories of worlds, which checks them against the rules."""
+    run = Lived(config({**MEADOW, **HISTORIES[name]}), TICKS)
+    return [History(run, world) for world in range(run.config.seeds)]
 
 
-@pytest.mark.parametrize("name", HISTORIES)
-def test_records_obey_the_rules_of_their_world(
-    histories: dict[str, list[History]], name: str
-) -> None:
-    for history in histories[name]:
+@every_world
+def test_records_obey_the_rules_of_their_world(name: str) -> None:
+    for history in histories(name):
         assert history.now == TICKS
         assert len(history.lives) > 20
 
 
-def test_fixation_is_that_of_the_pedigree(histories: dict[str, list[History]]) -> None:
+@every_world
+def test_fixation_is_that_of_the_pedigree(name: str) -> None:
     fixed = 0
-    for history in (each for all_ in histories.values() for each in all_):
+    for history in histories(name):
         worlds = history.lived.engine.state.world.worlds
         then = history.fixation()
         assert bool(happened(worlds.fixed)[history.world]) == (then is not None)
@@ -80,31 +83,37 @@ def test_fixation_is_that_of_the_pedigree(histories: dict[str, list[History]]) -
             fixed += 1
             assert to_host(worlds.fixed)[history.world] == then[0]
             assert to_host(worlds.fixed_births)[history.world] == then[1]
-    assert fixed == 6
+    assert fixed == len(histories(name))
 
 
-@pytest.mark.parametrize("name", HISTORIES)
-def test_hazard_strikes_its_share_of_organism_ticks(
-    histories: dict[str, list[History]], name: str
-) -> None:
+@every_world
+def test_hazard_strikes_its_share_of_organism_ticks(name: str) -> None:
     """An organism that dies of a graver cause may also be struck; records do not show that."""
-    worlds = histories[name]
+    worlds = histories(name)
     died = Counter(life.cause for history in worlds for life in history.dead)
     at_risk = sum(history.organism_ticks for history in worlds) - died["starved"] - died["fatal"]
     assert binomial(died["hazard"], at_risk, HISTORIES[name]["hazard"])
     assert (died["replaced"] > 100) == (HISTORIES[name]["placement"]["rule"] == "replacing")
 
 
-def test_children_are_mutants_or_without_heredity_founders(
-    histories: dict[str, list[History]],
+@pytest.mark.parametrize(
+    ("name", "origins"),
+    [
+        ("torus8", {"mutant"}),
+        ("mills", {"mutant", "copy"}),
+        pytest.param("control", {"founder"}, marks=pytest.mark.slow),
+    ],
+)
+def test_children_are_mutants_or_copies_or_without_heredity_founders(
+    name: str, origins: set[str]
 ) -> None:
-    for name, origin in (("torus8", "mutant"), ("control", "founder")):
-        lives = [life for each in histories[name] for life in each.lives]
-        assert {life.origin for life in lives if life.parent} == {origin}
+    lives = [life for each in histories(name) for life in each.lives]
+    assert {life.origin for life in lives if life.parent} == origins
 
 
-def test_without_heredity_no_two_genomes_are_alike(histories: dict[str, list[History]]) -> None:
-    flat = histories["control"][0].lived.genomes()
+@pytest.mark.slow
+def test_without_heredity_no_two_genomes_are_alike() -> None:
+    flat = histories("control")[0].lived.genomes()
     weights = flat.shape[1]
     assert len(flat) > 10
     assert flat.std() == pytest.approx(0.5, rel=5 / np.sqrt(2 * flat.size))
@@ -114,7 +123,7 @@ def test_without_heredity_no_two_genomes_are_alike(histories: dict[str, list[His
 
 def test_newborns_begin_with_a_fresh_body_and_an_empty_memory() -> None:
     """The run stops in a tick of births; each organism has sensed as often as it has lived."""
-    run = Lived(config(MEADOW, **HISTORIES["control"]), 10_000, births=200)
+    run = Lived(config(MEADOW, **HISTORIES["torus8"]), 10_000, births=200)
     (organisms, worlds), bodies = run.engine.state
     alive = np.asarray(organisms.alive)
     now = np.repeat(to_host(worlds.tick), 12)
@@ -170,9 +179,9 @@ def assert_of_parents(lived: Lived, tick: int, before: Any, now: Any, places: li
     return len(children)
 
 
-def test_energy_is_accounted_for_to_the_unit(histories: dict[str, list[History]]) -> None:
+def test_energy_is_accounted_for_to_the_unit() -> None:
     """Energy is in steps of 1/1024, rounded each tick: -1280 - 358 + 522 = -1116 a tick of 51,200."""
-    for history in histories["torus8"]:
+    for history in histories("torus8"):
         assert {life.cause for life in history.dead} == {"fatal", "hazard"}
         assert len({life.age for life in history.dead}) > 20
         for life in history.dead:
@@ -187,8 +196,9 @@ def test_energy_is_accounted_for_to_the_unit(histories: dict[str, list[History]]
         assert to_host(worlds.food)[history.world] == 307 * history.organism_ticks
 
 
-def test_no_organism_holds_more_than_the_cap(histories: dict[str, list[History]]) -> None:
-    dead = [life for history in histories["control"] for life in history.dead]
+@pytest.mark.slow
+def test_no_organism_holds_more_than_the_cap() -> None:
+    dead = [life for history in histories("control") for life in history.dead]
     ages = {life.age for life in dead}
     assert min(ages) == 1
     assert max(ages) > 10

@@ -1,13 +1,17 @@
 """One tick of deaths and births in six invented worlds, with another kind of change in each."""
 
 from functools import cache
+from types import SimpleNamespace
 from typing import Any
 
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
+from primordia.law import events as log
 from primordia.law.law import Law
 from primordia.law.metabolism import ONE
+from primordia.law.turnover import _birth, _birth_rows
 from primordia.law.world import BirthCause, Cause, World
 from primordia.random.keys import Purpose
 from primordia.random.wide import to_host, wide
@@ -154,6 +158,31 @@ def test_fixation_is_noted_once_and_forgotten_in_an_extinction(after: dict[str, 
     worlds = after["worlds"]
     assert to_host(worlds.fixed).tolist() == [NEVER, NEVER, NEVER, TICK, 30, NEVER]
     assert to_host(worlds.fixed_births).tolist() == [NEVER, NEVER, NEVER, 1003, 901, NEVER]
+
+
+@pytest.mark.parametrize(
+    ("inheritance", "child", "cause"),
+    [("parent", False, BirthCause.COPY), ("founder", True, BirthCause.FOUNDER)],
+)
+def test_without_heredity_a_child_is_a_founder_that_has_a_parent(
+    inheritance: str, child: bool, cause: BirthCause
+) -> None:
+    """A child is born in cell 1, and the founder of the other world in cell 5."""
+    law, cells = law_of(MEADOW, cells=3, seeds=2, inheritance=inheritance), np.array([1, 5])
+    organisms, worlds = begun(law, np.array([3, 4], np.uint64), tick=9)
+    world = World(organisms._replace(number=wide(np.arange(6) + 20)), worlds)
+    births: Any = SimpleNamespace(
+        founded=np.arange(6) == 5, number=wide(np.arange(6) + 50), parent=jnp.array([2] * 6)
+    )
+    keys: Any = SimpleNamespace(take=lambda _: None)
+    newborn: Any = SimpleNamespace(mutated=np.zeros(2, bool), notes=np.zeros((2, 0)))
+    birth = _birth(law, worlds, births, keys, cells)
+    assert birth.founder.tolist() == [child, True]
+    rows = _birth_rows(law, world, births, cells, None, birth.founder, newborn)
+    found = log.births_of(law.heredity).unpacked(np.asarray(rows))
+    assert found["cause"].tolist() == [cause, BirthCause.FOUNDER]
+    assert found["parent"].tolist() == [22, -1]
+    assert found["id"].tolist() == [51, 55]
 
 
 GAP = [2, 3, 2, -1, 0]

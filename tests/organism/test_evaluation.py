@@ -167,7 +167,7 @@ def test_scores_below_one_are_not_rounded_to_nothing() -> None:
 
 def test_any_setting_of_the_habitat_is_a_flag(poles: Path) -> None:
     """This holds also for a setting with the name of an argument of `evaluate` in Python."""
-    organism = "--organism", str(primordia.load(poles).oldest().id)
+    organism = "--organism", str(primordia.load(poles).oldest(0).id)
     changes = "--angle_limit", "180", "--track_limit", "1e9"
     wide = here("evaluate", poles, *organism, "--ticks", "50", *changes)
     assert "30 games, angle_limit 180, track_limit 1000000000.0" in wide.stdout

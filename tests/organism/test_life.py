@@ -21,8 +21,9 @@ from primordia.organism.reliving.relived import ALONE, RelivedLife
 from primordia.random.wide import wide
 from primordia.runs import loop
 from primordia.runs.archive import Archive
+from tests.organism.conftest import CALM
 from tests.toys import Mirror
-from tests.worlds import MEADOW, MILL, config
+from tests.worlds import MEADOW, MILLS, config
 
 MIRROR = pytest.param("mirror", marks=pytest.mark.slow)
 """Habitats on the host are also lived in again by tests of simulators, which share a law."""
@@ -33,8 +34,8 @@ def mirror(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Make the same run with the habitat on the host."""
     run = tmp_path_factory.mktemp("mirror") / "run"
     habitat = {"name": "tests.toys:Mirror", "inner": "mill"}
-    changed = {"habitat": habitat, "seeds": 2, "seed": 5, "stop": {"ticks": 700}}
-    loop.start(config({**MILL, **changed}), run)
+    changed = {**CALM, "habitat": habitat, "seed": 5, "stop": {"ticks": 700}}
+    loop.start(config({**MILLS, **changed}), run)
     return run
 
 
@@ -185,8 +186,9 @@ def test_a_habitat_on_the_host_is_closed_after_a_life(
     """It is closed after a whole life or a part of it; each life has its own habitat."""
     closed: list[Mirror] = []
     monkeypatch.setattr(Mirror, "close", lambda self: closed.append(self), raising=False)
-    oldest = primordia.load(mirror).oldest()
-    life = RelivedLife.of(oldest.run, oldest.id)
+    run = Archive(mirror)
+    row = int(np.argmax(run.lives.lifespan))
+    life = RelivedLife.of(run, run.lives.id[row], run.lives.world[row])
     one: Any = life.stretches()
     other = life.stretches()
     first = next(other)
@@ -210,7 +212,7 @@ def test_a_record_that_differs_from_the_life_is_noticed(
 
 def test_a_policy_acts_as_its_organism_did(poles: Path) -> None:
     organism = primordia.load(poles).oldest()
-    seen = next(RelivedLife.of(organism.run, organism.id).stretches())
+    seen = next(RelivedLife.of(organism.run, organism.id, organism.world).stretches())
     policy = organism.policy()
     assert [policy(each) for each in seen.senses[:200]] == seen.action[:200].tolist()
     policy.reset()
@@ -225,7 +227,7 @@ def test_a_policy_gives_continuous_actions(mill: Path) -> None:
     actions = [policy(senses) for senses in seen.senses[:200]]
     assert {(action.shape, action.dtype.name) for action in actions} == {((2,), "float32")}
     noise = seen.action[:200] - np.array(actions)
-    assert noise.std() == pytest.approx(MILL["motor"]["sd"], rel=5 / np.sqrt(2 * noise.size))
+    assert noise.std() == pytest.approx(MILLS["motor"]["sd"], rel=5 / np.sqrt(2 * noise.size))
     assert np.abs(np.corrcoef(noise.T)[0, 1]) < 5 / np.sqrt(len(noise))
     assert np.array(actions).std() > 0.01
     policy.reset()
@@ -234,8 +236,11 @@ def test_a_policy_gives_continuous_actions(mill: Path) -> None:
 
 def test_an_organism_has_the_properties_that_are_recorded(poles: Path) -> None:
     run = primordia.load(poles)
-    births = run.table("births").to_pylist()
-    deaths = {row["id"]: row for row in run.table("deaths").to_pylist()}
+    births, ended = (
+        [row for row in run.table(name).to_pylist() if row["world"] == 0]
+        for name in ("births", "deaths")
+    )
+    deaths = {row["id"]: row for row in ended}
     opened = run.opened()
     by_id = {row["id"]: Organism(opened, opened.lives.row(row["id"])) for row in births}
     parents = [row["parent"] for row in births]
@@ -253,7 +258,7 @@ def test_an_organism_has_the_properties_that_are_recorded(poles: Path) -> None:
         assert by_id[line[0]].birth_cause == "founder"
         assert [by_id[child].parent for child in line[1:]] == line[:-1]
     later = list(by_id.values())[len(by_id) // 2 :]
-    assert run.oldest().age == max(organism.age for organism in later)
+    assert run.oldest(0).age == max(organism.age for organism in later)
     assert run.organism(organism.id).descent() == organism.descent()
 
 

@@ -17,7 +17,7 @@ from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from primordia.runs.lives import ALIVE
-from tests.worlds import CLOCKWORK, MEADOW, MILL, config
+from tests.worlds import CLOCKWORK, MEADOW, MILLS, config
 
 HOST = {"name": "tests.toys:Mirror", "inner": "mill"}
 Change = Callable[[RelivedLife], None]
@@ -29,9 +29,8 @@ Change = Callable[[RelivedLife], None]
 def mill(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Archive:
     """Make a run in which organisms die of hunger, of a broken wheel and by accident."""
     run = tmp_path_factory.mktemp("mill") / "run"
-    habitat = HOST if request.param == "on the host" else MILL["habitat"]
-    settings = {**MILL, "habitat": habitat, "hazard": 0.02, "seeds": 2}
-    loop.start(config({**settings, "seed": 6, "stop": {"ticks": 400}}), run)
+    habitat = HOST if request.param == "on the host" else MILLS["habitat"]
+    loop.start(config({**MILLS, "habitat": habitat, "seed": 6, "stop": {"ticks": 400}}), run)
     return Archive(run)
 
 

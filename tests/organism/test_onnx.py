@@ -2,7 +2,9 @@
 
 import sys
 from pathlib import Path
+from typing import Any
 
+import jax
 import numpy as np
 import onnxruntime
 import pytest
@@ -15,6 +17,23 @@ from tests.commands import complains, here
 from tests.worlds import MILL, config
 
 TICKS = 50
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _examples() -> None:
+    """Load jax2onnx without random numbers. Its examples draw some, which compile for seconds."""
+
+    def zeros(
+        key: jax.Array, shape: tuple[int, ...] = (), dtype: Any = float, **_: Any
+    ) -> jax.Array:
+        return jax.numpy.asarray(np.zeros(shape, dtype))
+
+    with pytest.MonkeyPatch.context() as patch, jax.default_prng_impl("unsafe_rbg"):
+        for kind in ("uniform", "normal"):
+            patch.setattr(jax.random, kind, zeros)
+        import jax2onnx
+
+        jax2onnx.to_onnx(lambda senses: senses, [(1,)])
 
 
 def law_of(**values: object) -> Law:
@@ -46,7 +65,7 @@ def test_a_model_acts_tick_for_tick_as_the_policy_does(name: str, tmp_path: Path
 
 def test_a_discrete_action_is_its_number(poles: Path, tmp_path: Path) -> None:
     run = primordia.load(poles)
-    organism = run.oldest()
+    organism = run.oldest(0)
     done = here("export", run.path, "--organism", organism.id, tmp_path / "brain.onnx")
     assert done.returncode == 0, done.stderr
     model = session(tmp_path / "brain.onnx")

@@ -17,7 +17,8 @@ from primordia.organism.playing.seats import ODD, Frozen, Manner, Seats, begun, 
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
 from primordia.runs import loop
-from tests.worlds import MILL, config
+from tests.organism.conftest import CALM
+from tests.worlds import MILLS, config
 
 
 def test_marks_of_senses_lose_no_bit() -> None:
@@ -37,19 +38,25 @@ def test_the_mark_of_senses_changes_with_each_bit_and_with_their_order() -> None
         assert (mark(np.ascontiguousarray(senses[:, order])) != before).all()
 
 
-BASES: dict[str, str | dict[str, Any]] = {"poles": "CartPole-survival", "mill": MILL}
+BASES: dict[str, str | dict[str, Any]] = {"poles": "CartPole-survival", "mill": {**MILLS, **CALM}}
 
 
 @pytest.fixture(scope="module", params=[pytest.param("poles", marks=pytest.mark.slow), "mill"])
 def players(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Players:
     """Return a few organisms of a world, the last of which lives long."""
     folder = tmp_path_factory.mktemp("run") / "run"
-    settings = config(BASES[request.param], seeds=2, cells=24, stop={"ticks": 400})
+    settings = config(BASES[request.param], seeds=2, cells=16, stop={"ticks": 400})
     loop.start(settings, folder)
     run = primordia.load(folder)
     lives = run.lives()
     some = [*range(0, min(len(lives), 60), 3), int(np.argmax(lives.lifespan))]
     return players_of(run.opened(), [(int(lives.id[row]), int(lives.world[row])) for row in some])
+
+
+@pytest.fixture(autouse=True)
+def _short_loops(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Play in loops of few ticks, since games are short."""
+    monkeypatch.setattr(in_jax, "STRETCH", 16)
 
 
 def same(one: Games, other: Games) -> None:
@@ -79,7 +86,6 @@ def test_only_what_is_frozen_changes_a_game(
     players: Players, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """This holds also for players who play in parts, of which each freezes something else."""
-    monkeypatch.setattr(in_jax, "FEWEST", 64)  # loops of one size
     frozen = some_frozen(players)
     alive, held = play(players, 3, 150), play(players, 3, 150, frozen=frozen)
     differs = (alive.course != held.course).any(axis=1)
@@ -93,14 +99,11 @@ def test_only_what_is_frozen_changes_a_game(
 
 
 @pytest.mark.slow
-def test_watched_games_show_the_inputs_of_brains(
-    players: Players, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_watched_games_show_the_inputs_of_brains(players: Players) -> None:
     """Both habitats give the same games and the same inputs. Memory is zero at the start.
 
     The inputs that are shown are the live ones, also where the brain gets frozen ones.
     """
-    monkeypatch.setattr(in_jax, "FEWEST", 64)  # loops of one size
     watched = Manner(100, some_frozen(players), watched=True)
     watched_in = [list(stretches(each, 3, watched)) for each in (players, on_host(players))]
     ours, theirs = (
@@ -121,7 +124,6 @@ def test_watched_games_show_the_inputs_of_brains(
 
 
 def test_games_are_the_same_in_both(players: Players) -> None:
-    """Few games last; the others leave the loop on the way."""
     frozen = some_frozen(players)
     fused = play(players, 3, 150, frozen=frozen)
     same(fused, play(on_host(players), 3, 150, frozen=frozen))
@@ -190,7 +192,10 @@ def test_a_brain_whose_outputs_are_not_finite_ends_its_game_in_its_first_tick(
 def test_no_game_depends_on_those_that_leave_the_loop(
     players: Players, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """Few players have a large store, so the other games leave the loop, with what is frozen."""
     monkeypatch.setattr(in_jax, "FEWEST", 1)
+    store = np.geomspace(5, 75, len(players.genomes)).astype(np.float32)
+    unequal = players._replace(rates=players.rates._replace(store=store))
     sizes: list[int] = []
     left = in_jax._left
 
@@ -200,8 +205,8 @@ def test_no_game_depends_on_those_that_leave_the_loop(
 
     monkeypatch.setattr(in_jax, "_left", leave)
     games = []
-    for factor in (4, 10**6):
+    for factor in (2, 10**6):
         monkeypatch.setattr(in_jax, "FEWER", factor)
-        games.append(play(players, 3, 300))
+        games.append(play(unequal, 3, 150, frozen=some_frozen(players)))
     same(*games)
     assert len(set(sizes)) > 1

@@ -19,10 +19,9 @@ from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import directory, loop
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
-from tests.organism.conftest import WAYS
 from tests.toys import Mirror
 from tests.trouble import newest, reseal
-from tests.worlds import config
+from tests.worlds import MILLS, config
 
 
 def by_cause(run: Archive) -> dict[int, np.ndarray]:
@@ -90,7 +89,7 @@ def test_a_fork_is_a_state_to_begin_with(chain: list[Path]) -> None:
 
 @pytest.mark.slow
 def test_an_arms_worlds_are_those_of_its_runs(chain: list[Path], tmp_path: Path) -> None:
-    other = config({**WAYS, "seeds": 1, "seed": 40, "stop": {"ticks": 60}})
+    other = config({**MILLS, "seeds": 1, "seed": 40, "stop": {"ticks": 60}})
     loop.start(other, tmp_path / "a")
     loop.start(other.model_copy(update={"seed": 50, "seeds": 2}), tmp_path / "b")
     arm = primordia.load([tmp_path / "a", tmp_path / "b"])

@@ -48,7 +48,9 @@ def test_a_video_shows_the_beginning_and_the_end_of_a_long_life(
     assert done.returncode == 0, done.stderr
     oldest = primordia.load(poles).oldest()
     assert oldest.age > 1000
-    assert done.stdout.strip() == str(poles / "videos" / f"world0-organism{oldest.id}.mp4")
+    assert done.stdout.strip() == str(
+        poles / "videos" / f"world{oldest.world}-organism{oldest.id}.mp4"
+    )
     assert len(frames(Path(done.stdout.strip()))) == 50 + 50 + 50 + 50
 
 

@@ -19,14 +19,11 @@ from primordia.runs.fork import fork
 from primordia.runs.manifest import Progress
 from tests.commands import complains, here
 from tests.phylogeny.forests import ancestry, frame, parents_of, phyloframe, phylotrack
-from tests.worlds import MILL, config
+from tests.worlds import MILLS, config
 
 WORLDS: dict[str, Any] = {
-    **MILL,
-    "hazard": 0.02,
-    "replication": 0.2,
+    **MILLS,
     "seed": 5,
-    "seeds": 2,
 }
 CLOCKED: dict[str, Any] = {
     "task": "clocked",
@@ -247,6 +244,7 @@ def test_the_line_of_one_organism_is_written(family: Path) -> None:
     assert set(line["id"].to_pylist()) == ancestry(parents, {last})
 
 
+@pytest.mark.slow
 def test_children_of_two_parents_list_both(tmp_path: Path) -> None:
     run = live(tmp_path / "run", 300, recombination={"probability": 0.7})
     rows = lineage(run)
@@ -281,6 +279,7 @@ def test_children_of_two_parents_list_both(tmp_path: Path) -> None:
     assert dict(zip(label, label[tree["ancestor_id"]], strict=True)) == ancestor_id
 
 
+@pytest.mark.slow
 def test_a_fork_that_begins_to_recombine_lists_mates_of_its_own(
     family: Path, tmp_path: Path
 ) -> None:

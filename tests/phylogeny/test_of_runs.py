@@ -16,23 +16,28 @@ from primordia.errors import InputError
 from primordia.history.pedigree import genomes
 from primordia.history.rebuilding import changes
 from primordia.law.world import BirthCause
+from primordia.phylogeny import drift, slopes
 from primordia.phylogeny.descent import Ancestors
 from primordia.phylogeny.sweeps import Sweep
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
 from tests.synthetic import world_of
-from tests.worlds import MEADOW, config
+from tests.worlds import MEADOW, MILLS, config
 
 LIVES: dict[str, Any] = {
-    **MEADOW,
-    "brain": {"hidden": 6},
-    "hazard": 0.03,
-    "replication": 0.3,
-    "mutation": {"probability": 0.6, "blocks": {"output": {"scale": 0.5}}},
-    "seeds": 2,
+    **MILLS,
+    "replication": 0.12,
+    "mutation": {**MILLS["mutation"], "probability": 0.6},
 }
 MATES: dict[str, Any] = {**LIVES, "recombination": {"probability": 0.8}}
+
+
+@pytest.fixture(autouse=True)
+def _few_shadows(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Draw as few shadows of each world and line as a large world has."""
+    monkeypatch.setattr("primordia.phylogeny.drift.MOST", drift.FEWEST)
+    monkeypatch.setattr("primordia.phylogeny.slopes.MOST", slopes.FEWEST)
 
 
 @pytest.fixture(scope="module")
@@ -162,7 +167,7 @@ def test_changes_before_a_fork_are_left_out_if_the_code_there_is_untrusted(
 def test_lines_in_a_fork_are_founded_at_it(forked: Path) -> None:
     (lines,) = primordia.load(forked).lineages(world=1)
     assert lines.ticks[0] == 200
-    assert sorted(lines.lives.id[lines.founders]) == sorted(lines.lives.id[lines.lives.entered > 0])
+    assert sorted(lines.lives.id[lines.founders]) == sorted(lines.lives.id[lines.lives.born <= 200])
 
 
 def test_mutations_of_untrusted_code_are_left_out(
@@ -266,7 +271,7 @@ def test_without_heredity_lines_go_on_and_a_line_of_descent_does_not(tmp_path: P
     """The control's children are random founders that have a mother; lines are hers, genomes are not."""
     loop.start(config({**LIVES, "inheritance": "founder"}, stop={"ticks": 200}), tmp_path / "run")
     assert len(primordia.load(tmp_path / "run").ancestors().line) == 1
-    (first, _) = primordia.load(tmp_path / "run").lineages()
+    (first, *_) = primordia.load(tmp_path / "run").lineages()
     assert first.shares[-1].max() > 0.2
 
 

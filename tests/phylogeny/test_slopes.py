@@ -49,7 +49,7 @@ def test_shares_of_5_and_of_95_percent_are_still_measured(living: int) -> None:
     assert between(counts, living).tolist() == [False, False, True, True, True, True, False, False]
 
 
-SIZE, BIRTHS = 40, 1600
+SIZE, BIRTHS = 24, 600
 
 
 @pytest.fixture
@@ -67,9 +67,9 @@ def measured(name: int, advantage: float = 0.0) -> WorldLines:
 @pytest.mark.usefixtures("quick")
 def test_without_selection_p_values_are_those_of_chance() -> None:
     """The lines of one world are not independent, so the bounds are wide."""
-    worlds = [measured(100 + 2 * k) for k in range(20)]
+    worlds = [measured(100 + 2 * k) for k in range(10)]
     slopes = np.concatenate([each.p_of_slopes[np.isfinite(each.p_of_slopes)] for each in worlds])
-    assert len(slopes) > 100
+    assert len(slopes) > 60
     assert 0.4 < slopes.mean() < 0.6
     for below in (0.1, 0.3, 0.6):
         assert (slopes < below).mean() == pytest.approx(below, abs=0.1)

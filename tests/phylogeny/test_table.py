@@ -1,5 +1,6 @@
 """Phylogenies of invented worlds as tables and trees, against brute force and other readers."""
 
+from functools import partial
 from io import StringIO
 from pathlib import Path
 from types import SimpleNamespace
@@ -19,6 +20,7 @@ from primordia.phylogeny.newick import newick
 from primordia.phylogeny.phylogeny import Phylogeny, recorded, stacked
 from primordia.phylogeny.reduce import chosen
 from primordia.phylogeny.table import table
+from primordia.runs.records import Records
 from tests.phylogeny.forests import (
     FORESTS,
     ancestry,
@@ -30,7 +32,7 @@ from tests.phylogeny.forests import (
     phylotrack,
 )
 
-DEEP = 100_000
+DEEP = 20_000
 
 
 def text_of(whole: Phylogeny) -> str:
@@ -115,6 +117,7 @@ def test_collapsing_keeps_what_branches_lives_or_founds(worlds: list) -> None:
     assert parents_of(kept) == expected
 
 
+@pytest.mark.slow
 @given(FORESTS)
 def test_collapsing_the_dead_is_what_phyloframe_does(worlds: list) -> None:
     dead = [[(*organism[:2], False) for organism in world] for world in worlds]
@@ -138,6 +141,7 @@ def test_trees_are_read_back_by_dendropy(worlds: list) -> None:
         assert length == born[number] - (0 if up is None else born[up])
 
 
+@pytest.mark.slow
 @given(FORESTS)
 def test_trees_are_those_of_the_table_in_the_converter(worlds: list) -> None:
     """Its branches have the same lengths: a root's is the time of its birth."""
@@ -286,6 +290,22 @@ def test_facts_on_record_are_those_of_each_organism() -> None:
     assert {name: each.to_pylist() for name, each in found.of_deaths.items()} == {
         "energy": [-1, None, 5, 4], "food": [2, None, 7, 0], "hits": [9, None, 0, 3]
     }  # fmt: skip
+
+
+def test_mates_are_read_from_the_births_of_each_organism() -> None:
+    """Births of other worlds and without a mate lie between."""
+    lives = forest([(0, 0, True)] * 3, [(0, 0, True)] * 2).lives
+    births = pa.table({
+        "world": [0, 1, 0, 1, 0], "id": [0, 0, 1, 1, 2], "parent": [None, None, 0, 0, 1],
+        "mate": pa.array([None, None, None, 5, 4], pa.int64()),
+    })  # fmt: skip
+    run: Any = SimpleNamespace(
+        schema=SimpleNamespace(mates=True), table=lambda _, columns: births.select(columns)
+    )
+    run._of_births = partial(Records._of_births, run)
+    assert Records.mates_of(run, lives).tolist() == [-1, -1, 4, -1, 5]
+    run.schema.mates = False
+    assert Records.mates_of(run, lives).tolist() == [-1] * 5
 
 
 def test_facts_of_a_run_and_its_fork_follow_one_another() -> None:
