@@ -112,6 +112,14 @@ def test_choices_are_reversed_and_permuted() -> None:
         np.testing.assert_array_equal(after.inner, same)
         bodies = after
     assert len(set(map(tuple, state[1]))) == 2
+    one = jax.tree.map(lambda leaf: np.asarray(leaf)[0], bodies)
+    pictures = made.picture(one, choices[0]), made.inner.picture(one.inner, expected[0])
+    assert (
+        pictures[0].tobytes()
+        == pictures[1].tobytes()
+        != made.picture(one, 1 - choices[0]).tobytes()
+    )
+    assert made.caption(one, choices[0]) == "action 0, 2 changes"
 
 
 def test_the_same_changes_come_on_the_host(past: Any) -> None:

@@ -117,6 +117,21 @@ class _Wrapper:
         """Return the wrapped habitat as the standard benchmark scores it, without changes."""
         return self.inner.original()
 
+    def picture(self, body: Changed, action: np.ndarray) -> "Image":
+        """Return the wrapped habitat's picture of the body and of what it did, changes included.
+
+        In the tick of a change, the picture shows what the same choice does from then on.
+        """
+        course, chosen = jax.tree.map(lambda leaf: leaf[None], (body.course, np.asarray(action)))
+        done = np.asarray(act(self.changes, self.action, course, chosen))[0]
+        return self.inner.picture(body.inner, done)
+
+    def caption(self, body: Changed, action: np.ndarray) -> str:
+        """Return the wrapped habitat's caption of the choice, and the number of changes so far."""
+        count = int(np.sum(body.course.times))
+        changes = f"{count} change{'' if count == 1 else 's'}"
+        return f"{self.inner.caption(body.inner, action)}, {changes}"
+
 
 class ChangingInJax(_Wrapper, JaxHabitat):
     """A habitat in JAX whose world changes within a life."""
@@ -137,14 +152,6 @@ class ChangingInJax(_Wrapper, JaxHabitat):
         done = act(self.changes, self.action, bodies.course, action)
         inner, outcome = self.inner.step(bodies.inner, done)
         return Changed(inner, advance(self.changes, bodies.course)), outcome
-
-    def picture(self, body: Changed, action: np.ndarray) -> "Image":
-        """Return the picture of the wrapped habitat."""
-        return self.inner.picture(body.inner, action)
-
-    def caption(self, body: Changed, action: np.ndarray) -> str:
-        """Return the caption of the wrapped habitat, and the number of changes so far."""
-        return _with_changes(self.inner.caption(body.inner, action), body.course)
 
 
 class ChangingOnHost(_Wrapper, HostHabitat):
@@ -205,14 +212,6 @@ class ChangingOnHost(_Wrapper, HostHabitat):
             {name: each for name, each in arrays.items() if not name.startswith(COURSE)}
         )
 
-    def picture(self, body: Changed, action: np.ndarray) -> "Image":
-        """Return the picture of the wrapped habitat."""
-        return self.inner.picture(body.inner, action)
-
-    def caption(self, body: Changed, action: np.ndarray) -> str:
-        """Return the caption of the wrapped habitat, and the number of changes so far."""
-        return _with_changes(self.inner.caption(body.inner, action), body.course)
-
 
 def _after(
     changes: tuple[Kind, ...], course: Course, alive: Array, senses: Array
@@ -220,11 +219,6 @@ def _after(
     """Return the courses of living bodies one tick later, and what organisms perceive of the senses."""
     course = select_bodies(alive, advance(changes, course), course)
     return course, sense(changes, course, senses)
-
-
-def _with_changes(caption: str, course: Course) -> str:
-    count = int(np.sum(course.times))
-    return f"{caption}, {count} change{'' if count == 1 else 's'}"
 
 
 def changing(habitat: AnyHabitat, changes: tuple[Kind, ...]) -> AnyHabitat:
