@@ -59,7 +59,8 @@ BLOCKS: dict[str, Any] = {
     },
     "seasons": [
         {**STRANGE["seasons"][0], "setting": "mutation.blocks.output.scale"},
-        *STRANGE["seasons"][1:],
+        {**STRANGE["seasons"][1], "when": "mean_age", "above": 2.0},
+        *STRANGE["seasons"][2:],
     ],
 }
 """One parent, and settings of mutation for each block."""

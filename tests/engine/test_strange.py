@@ -118,7 +118,7 @@ def test_the_worlds_are_strange_enough(settings: dict[str, Any], whole: Lived) -
         late = born & (births["tick"] > QUIET)
         assert np.diff(births["tick"][late]).max() > STRANGE["mutation"]["every"]
         mutant = births["cause"] == "mutant"
-        assert 3 < (mutant & late).sum() < mutant[born].sum() < 0.97 * born.sum()
+        assert 1 < (mutant & late).sum() < mutant[born].sum() < 0.97 * born.sum()
         if "quarters" in births:
             assert len(set(births["quarters"][born & mutant].tolist())) > 5
         if "mate" in births:
@@ -169,7 +169,7 @@ def test_worlds_that_stop_early_do_not_change_the_others(
     """The bodies, memories and energy of a stopped world are unchanged, in JAX and on the host."""
     if habitat != "Mill":
         settings = on_host(settings, habitat)
-    together = Lived(config(settings), TICKS, births=60)
+    together = Lived(config(settings), TICKS, births=70)
     ticks = together.engine.arrays()["world.worlds.tick.lo"].tolist()
     assert 10 < min(ticks) < max(ticks) < TICKS
     for world, stopped in enumerate(ticks):
@@ -182,7 +182,7 @@ def test_a_habitat_on_the_host_lives_under_the_same_law(twins: tuple[Lived, Path
     run = primordia.load(clocked)
     for name in ("births", "deaths", "metrics"):
         here, there = run.arrays(name), whole.table(name)
-        assert len(there["tick"]) > 30
+        assert len(there["tick"]) > 25
         for column, values in there.items():
             np.testing.assert_array_equal(here[column], values, err_msg=column)
     a, b = Archive(clocked).state, whole.engine.arrays()
