@@ -10,7 +10,7 @@ from jax import lax
 from primordia.compiled import shared
 from primordia.config import load
 from primordia.errors import InputError
-from primordia.habitats.changing import Changed, changing
+from primordia.habitats.changing import Changed, advance, begin, changing
 from primordia.habitats.contract import JaxHabitat
 from primordia.habitats.on_host import OnHost
 from primordia.testing import check_habitat
@@ -87,6 +87,21 @@ def test_only_what_changes_is_changed_and_in_the_way_that_is_said(past: Any) -> 
     assert weak.std() == pytest.approx(0.4 / np.sqrt(12), rel=0.2)
 
 
+def test_each_change_draws_for_itself_from_both_words_of_a_birth() -> None:
+    """Two changes with the same settings come at different ages."""
+    often = {"kind": "reverse-actions", "chance": 0.5}
+    made = mill(PERMUTED, PERMUTED, often, often)
+    course = begin(made.changes, made.action, WORDS)
+    assert (course.period[:, 0] != course.period[:, 1]).mean() > 0.9
+    first, second = np.asarray(advance(made.changes, course).times)[:, 2:].T
+    assert 0.25 < (first != second).mean() < 0.75
+    for place in (-2, -1):
+        others = WORDS.copy()
+        others[:, place] += np.uint32(1)
+        period = begin(made.changes, made.action, others).period
+        assert (period[:, 0] != course.period[:, 0]).mean() > 0.9
+
+
 def test_bodies_do_what_their_changed_actions_say(past: Any) -> None:
     """The same mill without changes goes the same way if it is given the changed actions."""
     course, _, inner = past
@@ -129,11 +144,13 @@ def test_the_same_changes_come_on_the_host(past: Any) -> None:
     alive = np.ones(BODIES, bool)
     for tick in range(TICKS - 1):
         np.testing.assert_array_equal(senses, past[1][tick])
-        if tick == 50:  # a habitat that is opened anew goes on from the saved arrays
+        if tick == 50:  # another habitat goes on from the saved arrays
             saved = {name: array.copy() for name, array in made.save().items()}
             made = changing(OnHost(Mill()), made.changes)
             made.open(BODIES)
             made.load(saved)
+        if tick == 30:  # nothing changes for bodies at rest
+            made.step(ACTIONS[tick], ~alive)
         senses, _ = made.step(ACTIONS[tick], alive)
     seen: Changed = made.seen()
     np.testing.assert_array_equal(seen.course.times, past[0].times[-1])

@@ -97,13 +97,6 @@ class Plastic(Brain):
         now = _Memory(senses, hidden, self._activity(output), fast.reshape(len(fast), -1))
         return jnp.concatenate(now, axis=1), output
 
-    def fast_weights(self, memory: np.ndarray, senses: int, outputs: int) -> np.ndarray:
-        """Return the fast weights in memories (..., M), as (..., hidden, outputs)."""
-        first = senses + self.hidden + outputs
-        (shape,) = layer("output", self.hidden, outputs).values()
-        fast = memory[..., first:].reshape(*memory.shape[:-1], *shape)
-        return fast if shape[0] == self.hidden else np.swapaxes(fast, -1, -2)
-
     def _split(self, genome: Genome, memory: Array, senses: Array) -> _Memory:
         shape = genome["output"].shape
         outputs = shape[1] * shape[2] // self.hidden
