@@ -64,3 +64,16 @@ BLOCKS: dict[str, Any] = {
     ],
 }
 """One parent, and settings of mutation for each block."""
+GIVING: dict[str, Any] = {
+    **STRANGE,
+    "brain": {"hidden": 3, "interoception": True},
+    "replication": {"kind": "act", "price": 0.3},
+    "metabolism": {**MILL["metabolism"], "gain": 6.0, "drain": 0.7},
+    "hazard": 0.03,
+    "seasons": [
+        *STRANGE["seasons"][:2],
+        {**STRANGE["seasons"][2], "value": 0.001},
+        {"kind": "schedule", "setting": "replication.price", "at": QUIET, "value": 40.0},
+    ],
+}
+"""Organisms that perceive their energy, choose when to copy themselves, and what a child begins with."""

@@ -62,7 +62,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Archive:
 
 def test_a_life_of_an_own_brain_is_lived_again(run: Archive) -> None:
     """The longest life; it raises Trouble if it ends otherwise than recorded."""
-    own = {"kind": "examples.brain:Leaky", "efference": False, "neurons": 6}
+    own = {"kind": "examples.brain:Leaky", "efference": False, "interoception": False, "neurons": 6}
     assert run.config.brain == own
     assert run.law.heredity.layout.names == ["input", "recurrent", "keep", "output"]
     row = run.lives.oldest()

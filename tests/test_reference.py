@@ -44,7 +44,7 @@ def types(schema: pa.Schema) -> dict[str, str]:
 
 @pytest.mark.parametrize("name", TABLES)
 def test_columns_of_a_run_are_those_of_the_page(name: str) -> None:
-    schema = Schema(cells=4, mates=True, notes=(), rates=(), tallies=())
+    schema = Schema(cells=4, mates=True, notes=(), rates=(), tallies=(), endowed=True)
     rows = np.zeros((1, schema.columns(name).width), np.uint32)
     assert documented(name) == types(schema.arrow(name, rows).schema)
 

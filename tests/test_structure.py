@@ -17,6 +17,7 @@ LAYERS = [
     {"brains", "pool"},
     {"habitats", "mutations"},
     {"law"},
+    {"fitting"},
     {"config"},
     {"engine"},
     {"runs"},

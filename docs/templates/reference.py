@@ -8,7 +8,7 @@ import json
 import re
 from collections.abc import Iterator
 from types import NoneType
-from typing import Annotated, Any, Literal, get_args, get_origin
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 import annotated_types as limits
 import click
@@ -145,8 +145,13 @@ def _kind(annotation: Any) -> str:
         return ", ".join(f"`{_value(each)}`" for each in inner)
     if origin is tuple:
         return f"list: {_kind(inner[0])}"
-    if NoneType in inner or origin is Annotated:
+    if NoneType in inner:
         return _kind(inner[0])
+    if origin is Annotated:
+        limited = [limit for each in inner[1:] for limit in getattr(each, "metadata", [])]
+        return _kind(inner[0]) + _range(limited)
+    if origin is Union:
+        return ", or ".join(map(_kind, inner))
     return "table"
 
 

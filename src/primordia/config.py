@@ -5,7 +5,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
-from typing import Any, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 import tomli_w
@@ -13,15 +13,16 @@ from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
 from primordia.brains import contract as brains
 from primordia.brains import genomes
-from primordia.brains.checks import check_brain
 from primordia.brains.contract import Brain
 from primordia.brains.layout import Layout
 from primordia.errors import InputError
+from primordia.fitting import check
 from primordia.habitats import contract as habitats
 from primordia.habitats.change import changes_of
 from primordia.habitats.changing import changing
-from primordia.habitats.checks import check_arrays, check_properties
-from primordia.habitats.contract import AnyHabitat, Continuous, JaxHabitat
+from primordia.habitats.checks import check_properties
+from primordia.habitats.contract import AnyHabitat
+from primordia.law.act import Act
 from primordia.law.efference import Efferent
 from primordia.law.heredity import Heredity
 from primordia.law.law import Law
@@ -31,10 +32,16 @@ from primordia.law.placement import Placement
 from primordia.law.recombination import Recombination
 from primordia.law.seasons import Season
 from primordia.mutations import contract as mutations
-from primordia.mutations.checks import check_mutation
-from primordia.own_code import LIBRARIES
-from primordia.settings.base import Rate, Settings
-from primordia.settings.fields import first_fault, rates_of, refusal, setting_fields
+from primordia.settings.base import SEASONAL, Rate, Settings
+from primordia.settings.fields import (
+    NUMBER,
+    OTHER,
+    first_fault,
+    number_or_table,
+    rates_of,
+    refusal,
+    setting_fields,
+)
 from primordia.settings.limits import ForkedFrom, Stop
 from primordia.settings.making import make
 from primordia.settings.tables import (
@@ -42,7 +49,6 @@ from primordia.settings.tables import (
     NONE,
     PARTS,
     code_of,
-    did_you_mean,
     merged,
     replaced,
     values_of,
@@ -64,8 +70,12 @@ class Config(Settings):
     motor: Motor = Motor()
     cells: int = Field(32, ge=2, le=2**24, description="number of cells of one world")
     placement: Placement = Placement()
-    replication: Rate = Field(
-        0.05, ge=0, le=1, description="probability that an organism replicates in a tick"
+    replication: Annotated[
+        NUMBER[Annotated[float, Field(ge=0, le=1)]] | OTHER[Act], number_or_table, SEASONAL
+    ] = Field(
+        0.05,
+        description="probability that an organism replicates in a tick; or a table with `kind`: then"
+        " organisms choose when to copy themselves",
     )
     mutation: dict[str, Any] = Field({}, description="`kind` of the mutation, and its own settings")
     recombination: Recombination | None = Field(None, description="none: children have one parent")
@@ -121,6 +131,11 @@ class Config(Settings):
         """The path of the copy that a run holds of each file named by the habitat's settings."""
         return self._kept
 
+    @property
+    def act(self) -> Act | None:
+        """The act by which organisms copy themselves; None if they replicate spontaneously."""
+        return self.replication if isinstance(self.replication, Act) else None
+
     def keeping(self, copies: dict[str, str]) -> Self:
         """Return the same settings; the habitat is made with these copies of files."""
         config = self.model_copy()
@@ -147,24 +162,32 @@ class Config(Settings):
         brain = make("brain", self.brain, brains.find)
         return Efferent(inner=brain, action=habitat.action) if brain.efference else brain
 
+    def sizes(self, habitat: AnyHabitat) -> tuple[int, int]:
+        """Return the numbers of senses and of outputs of a brain that lives in the habitat."""
+        senses = habitat.senses_size + bool(self.brain.get("interoception"))
+        return senses, habitat.action.size + (0 if self.act is None else self.act.outputs)
+
     def build_layout(self, habitat: AnyHabitat) -> Layout:
         """Return the layout of the genomes of organisms that live in the habitat."""
-        return self.build_brain(habitat).layout(habitat.senses_size, habitat.action.size)
+        return self.build_brain(habitat).layout(*self.sizes(habitat))
 
     def build_law(self, habitat: AnyHabitat) -> Law:
         """Return the law of the run's worlds."""
         brain, heredity = self.build_brain(habitat), self.build_heredity(self.build_layout(habitat))
+        senses, outputs = self.sizes(habitat)
         return Law(
             worlds=self.seeds,
             cells=self.cells,
             brain=brain,
             heredity=heredity,
-            senses=habitat.senses_size,
-            memory=brain.memory(habitat.senses_size, habitat.action.size),
+            senses=senses,
+            interoception=brain.interoception,
+            memory=brain.memory(senses, outputs),
             action=habitat.action,
             motor=self.motor,
             placement=self.placement,
             metabolism=self.metabolism,
+            act=self.act,
             beginning=tuple(self._rates(heredity).items()),
             genesis=self.genesis,
             seasons=self.seasons,
@@ -290,59 +313,9 @@ def checked(config: Config, source: str) -> Config:
         InputError: settings do not fit together; one line names the settings and the source.
     """
     try:
-        _check(config)
+        check(config)
     except ValidationError as error:
         raise refusal(source, first_fault(error, Config)) from None
     except (InputError, ValueError) as error:
         raise refusal(source, error) from None
     return config
-
-
-def _check(config: Config) -> None:
-    """Raise an error if settings that are each valid do not fit together."""
-    habitat = config.build_habitat()
-    if (cells := config.cells * config.seeds) > 2**26:
-        says = f"{cells} cells are more than 2^26; spread them over several runs"
-        raise InputError(f"cells x seeds: {says}")
-    _check_own_code(config, habitat)
-    continuous = any(isinstance(part, Continuous) for part in habitat.action.parts)
-    if config.motor.kind == "gaussian" and not continuous:
-        raise InputError(
-            "motor.kind: this habitat's actions are discrete, so a gaussian motor cannot be used;"
-            " set motor.kind to direct"
-        )
-    law = config.build_law(habitat)
-    try:
-        law.heredity.mutation.check(law.heredity.layout)
-    except ValueError as error:
-        raise InputError(f"mutation.{error}") from None
-    for season in config.seasons:
-        _check_season(season.setting, config, law)
-
-
-def _check_own_code(config: Config, habitat: AnyHabitat) -> None:
-    """Trace the parts of the user's own. To trace an environment of a library can take seconds."""
-    modules = {part: {each.partition(":")[0] for each in config.code_of(part)} for part in PARTS}
-    own = {part for part in PARTS if modules[part] - {*LIBRARIES}}
-    if "habitat" in own and isinstance(habitat, JaxHabitat):
-        check_arrays(habitat)
-    if "brain" in own:
-        check_brain(config.build_brain(habitat), habitat.senses_size, habitat.action.size)
-    if "mutation" in own:
-        mutation = make("mutation", config.mutation, mutations.find)
-        check_mutation(mutation, config.build_layout(habitat))
-
-
-def _check_season(setting: str, config: Config, law: Law) -> None:
-    if not law.governed(setting):
-        known = sorted(
-            {*law.rates, *(f"mutation.{name}" for name in rates_of(law.heredity.mutation))}
-        )
-        raise InputError(
-            f"seasons: {setting} is not a setting that seasons can change in this task"
-            f"{did_you_mean(setting, known)}"
-        )
-    if setting.startswith("metabolism.") and config.metabolism is None:
-        raise InputError(
-            f"seasons: {setting} needs a metabolism; remove the season or add a metabolism"
-        )

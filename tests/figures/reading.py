@@ -67,7 +67,8 @@ def edges_at(collection: Any, x: float) -> tuple[float, float]:
 def key(axes: Axes) -> dict[str, str]:
     """Return the words of a panel's key and their colours."""
     words = [each for each in axes.texts if isinstance(each, Annotation)]
-    in_key = [each for each in words if each.get_position() in ((0, 4), (6, 0))]
+    places = {(0, 4 + style.LINE * line) for line in range(4)} | {(style.GAP, 0)}
+    in_key = [each for each in words if each.get_position() in places]
     return {each.get_text(): to_hex(each.get_color()) for each in in_key}
 
 

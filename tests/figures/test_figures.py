@@ -128,8 +128,8 @@ def test_space_time_never_has_more_columns_than_a_screen(cells: int, shown: int)
     assert figure.axes[0].get_xlabel() == "cell of the ring" + some * (shown < cells)
 
 
-SOMETIMES = {"foraging", "threshold"}
-"""Figures of runs in which one can starve, or enough mutants were born."""
+SOMETIMES = {"foraging", "threshold", "investment"}
+"""Figures of runs in which one can starve, enough mutants were born, or replication is an act."""
 
 
 @pytest.fixture(scope="module")

@@ -164,7 +164,7 @@ def test_a_threshold_that_is_unknown_everywhere_is_not_drawn(
     """The number of stretches follows from the births of the largest world, and is at most 20."""
     edges = []
 
-    def noted(world: int, lives: Lives, of_births: np.ndarray) -> list[Any]:
+    def noted(world: int, lives: Lives, of_births: np.ndarray, acts: bool) -> list[Any]:
         edges.append((world, len(lives), of_births.tolist()))
         return [SimpleNamespace(held=None)]
 
@@ -172,6 +172,6 @@ def test_a_threshold_that_is_unknown_everywhere_is_not_drawn(
     for births, count in ((200 * 25, 20), (1234, 6), (400, 2)):
         edges.clear()
         lives = worlds_of([(0, 3, True)] * 7, [(0, 3, True)] * births, until=9)
-        assert threshold.draw(SimpleNamespace(lives=lives), 0) is None
+        assert threshold.draw(run_of(lives), 0) is None
         expected = [int(births * k / count) for k in range(count + 1)]
         assert edges == [(0, 7, expected), (1, births, expected)]

@@ -50,6 +50,25 @@ def test_powers_of_ten_are_written_in_short_form(axes: Axes) -> None:
     assert axes.yaxis.get_major_formatter()(1500, 0) == "1.5k"
 
 
+def test_a_key_wider_than_its_panel_has_several_lines() -> None:
+    """Otherwise the panels would be crushed. Words stay in order, and the title is above them."""
+    words = {f"word {number}": style.BLUE for number in range(12)}
+    with style.applied():
+        figure = Figure(figsize=(style.PAGE, 2.4))
+        panels = figure.subplots(1, 3)
+        for axes in panels:
+            style.title(axes, "Title", words)
+        figure.draw_without_rendering()
+    for axes in panels:
+        boxes = [each.get_window_extent() for each in axes.texts]
+        heights = [round(box.y0) for box in boxes]
+        assert len(set(heights)) > 1
+        assert heights == sorted(heights, reverse=True)
+        assert max(box.x1 for box in boxes) < axes.get_window_extent().x1 + 50
+        assert axes.get_window_extent().width > 0.2 * figure.bbox.width
+        assert axes.title.get_window_extent().y0 > max(heights)
+
+
 def test_median_and_quartiles_end_where_fewer_than_half_of_the_worlds_have_values(
     axes: Axes,
 ) -> None:

@@ -78,7 +78,7 @@ def stored() -> Any:
     every = {f"world.worlds.{name}": np.array(values, np.uint64) for name, values in counts.items()}
     every["world.organisms.born"] = np.array([890, 100, 600, 690, 0, 697], np.uint64)
     return SimpleNamespace(
-        config=SimpleNamespace(cells=3, metabolism=True, seasons=["any"]),
+        config=SimpleNamespace(cells=3, metabolism=True, act=None, seasons=["any"]),
         description=SimpleNamespace(tallies=("score", "kills"), rate=50.0),
         world_seeds=np.array([7, 2**63], np.uint64),
         count=every.__getitem__,

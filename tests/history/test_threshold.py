@@ -12,8 +12,12 @@ from primordia.runs.lives import Lives, joined
 from tests.assays.lives import COPY, FOUNDER, MUTANT, lives
 
 
-def measured(world: Lives, after: float = 0.0) -> Any:
-    return threshold(SimpleNamespace(lives=world), after)[0]
+def run_of(lives: Lives, act: object = None) -> Any:
+    return SimpleNamespace(lives=lives, config=SimpleNamespace(act=act))
+
+
+def measured(world: Lives, after: float = 0.0, act: object = None) -> Any:
+    return threshold(run_of(world, act), after)[0]
 
 
 def test_numbers_are_those_of_the_good_parents() -> None:
@@ -66,6 +70,26 @@ def test_ticks_of_the_living_count_in_the_ticks_lived_per_death() -> None:
     assert found.held == pytest.approx(of_copies / of_all * (1 - 13 / 25 * (1 - 0.5)))
 
 
+def test_children_take_the_place_of_lifespans_where_organisms_choose_when_to_copy() -> None:
+    """A founder has 40 children, 20 copies and 20 mutants; of these, 10 and 4 have as many children.
+
+    All live equally long, so there is no advantage in lifespan.
+    """
+    rows: list = [(-1, FOUNDER, 10), *[(0, COPY, 10)] * 20, *[(0, MUTANT, 10)] * 20]
+    for parent in (*range(1, 11), *range(21, 25)):
+        rows += [(parent, COPY, 10)] * 40
+    world = lives(*rows)
+    found = measured(world, act="act")
+    children = 40 + 14 * 40
+    assert found.mutated == pytest.approx(20 / children)
+    assert found.as_good == 1  # the copies of the last generation have no children yet
+    assert measured(world).advantage == pytest.approx(1)
+    edges = np.array([0, 41])
+    (early,) = over_births(0, world, edges, acts=True)
+    assert early.as_good == pytest.approx((4 / 20) / (10 / 20))
+    assert early.advantage == pytest.approx((10 * 40 / 20) / (children / 41))
+
+
 def test_a_world_in_which_nothing_is_known_says_so() -> None:
     assert measured(lives((-1, FOUNDER, 5))) == Threshold(0, None, None, None)
     for numbers in ((None, 0.5, 2.0), (0.5, None, 2.0), (0.5, 0.5, None)):
@@ -104,7 +128,7 @@ def test_a_parent_is_good_from_the_90th_percentile_of_late_births_on() -> None:
     early: list = [(-1, FOUNDER, 50), (-1, FOUNDER, 49), *[(-1, FOUNDER, 900)] * 98]
     late: list = [(0, COPY, 50)] * 5 + [(0, COPY, 60)] * 6 + [(0, COPY, 1)] * 9
     late += [(0, MUTANT, 1)] * 30 + [(1, COPY, 1)] * 20 + [(1, MUTANT, 1)] * 30
-    found = threshold(SimpleNamespace(lives=lives(*early, *late)))[0]
+    found = measured(lives(*early, *late), 0.5)
     long = 5 * 50 + 6 * 60
     of_copies, of_all = (long + 9) / 20, (long + 89) / 100
     assert (found.mutated, found.as_good) == (0.6, 0)
@@ -116,8 +140,7 @@ def test_each_world_has_its_own_threshold() -> None:
     good: list = [(-1, FOUNDER, 100)] + [(-1, FOUNDER, 1)] * 200
     good += [(0, COPY, 100)] * 10 + [(0, MUTANT, 100)] * 5 + [(0, MUTANT, 1)] * 5
     worlds = [lives(*good), lives(*few), lives(*good, *[(0, MUTANT, 100)] * 20)]
-    run: Any = SimpleNamespace(lives=joined(worlds, np.arange(3)))
-    found: list[Any] = threshold(run, 0.0)
+    found: list[Any] = threshold(run_of(joined(worlds, np.arange(3))), 0.0)
     assert [each.world for each in found] == [0, 1, 2]
     assert [each.mutated for each in found] == pytest.approx([10 / 20, 0, 30 / 40])
     assert [each.as_good for each in found] == [0.5, None, 25 / 30]

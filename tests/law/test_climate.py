@@ -132,4 +132,5 @@ def test_cells_have_the_settings_of_their_world() -> None:
 def test_the_metabolism_takes_its_own_settings_from_the_climate() -> None:
     names = "store", "drain", "gain", "effort_cost", "cap"
     climate = {f"metabolism.{name}": name for name in reversed(names)} | {"gain": "other"}
-    assert Rates.of(climate)._asdict() == {name: name for name in names}
+    assert Rates.of(climate)._asdict() == {name: name for name in names} | {"price": None}
+    assert Rates.of(climate | {"replication.price": 3}).price == 3

@@ -179,7 +179,7 @@ def test_without_heredity_a_child_is_a_founder_that_has_a_parent(
     birth = _birth(law, worlds, births, keys, cells)
     assert birth.founder.tolist() == [child, True]
     rows = _birth_rows(law, world, births, cells, None, birth.founder, newborn)
-    found = log.births_of(law.heredity).unpacked(np.asarray(rows))
+    found = log.births_of(law).unpacked(np.asarray(rows))
     assert found["cause"].tolist() == [cause, BirthCause.FOUNDER]
     assert found["parent"].tolist() == [22, -1]
     assert found["id"].tolist() == [51, 55]

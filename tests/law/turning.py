@@ -10,6 +10,7 @@ from jax import Array
 from primordia.brains.contract import Genome
 from primordia.law import events as log
 from primordia.law.law import Law
+from primordia.law.tick import Fates
 from primordia.law.turnover import birth_keys, turnover
 from primordia.law.world import Organisms, World, Worlds
 from primordia.random.keys import Purpose, encrypt
@@ -40,12 +41,12 @@ def turned(
     """
     running = np.arange(law.worlds) != (-1 if stopped is None else stopped)
     (organisms, worlds), lists, newborn = _turned(
-        law, world, running, wants.ravel(), cause.ravel().astype(np.int32)
+        law, world, running, Fates(cause.ravel().astype(np.int32), wants.ravel(), None, np.True_)
     )
     births, deaths = (
         columns.unpacked(np.asarray(list_.rows)[: int(list_.filled)])
         for columns, list_ in (
-            (log.births_of(law.heredity), lists.births),
+            (log.births_of(law), lists.births),
             (log.DEATHS, lists.deaths),
         )
     )
@@ -53,9 +54,9 @@ def turned(
 
 
 @partial(jax.jit, static_argnums=0)
-def _turned(law: Law, world: World, running: Array, wants: Array, cause: Array) -> tuple:
+def _turned(law: Law, world: World, running: Array, fates: Fates) -> tuple:
     keys = birth_keys(law, world.worlds)
-    return turnover(law, world, log.empty(law), running, wants, cause, keys)
+    return turnover(law, world, log.empty(law), running, fates, keys)
 
 
 def drawn(seed: object, purpose: Purpose, tick: object, cell: object, index: object = 0) -> Wide:

@@ -86,8 +86,10 @@ class Alone:
     def __init__(self, death: int | None) -> None:
         self.death, self.asked, self.closed = death, list[Any](), 0
 
-    def live(self, now: int, ticks: np.ndarray, rates: Any, count: int) -> tuple[int, Stretch]:
-        self.asked.append((now, ticks.tolist(), rates, count))
+    def live(
+        self, now: int, ticks: np.ndarray, rates: Any, given: Any, count: int
+    ) -> tuple[int, Stretch]:
+        self.asked.append((now, ticks.tolist(), rates, given, count))
         return now + 1, stretch(ticks[:count], self.death)
 
     def close(self) -> None:
@@ -114,6 +116,7 @@ def test_a_life_is_lived_to_its_recorded_end_or_to_an_earlier_death(
     monkeypatch.setattr(RelivedLife, "_start", lambda self, alone: 0)
     monkeypatch.setattr(RelivedLife, "_climate", lambda self, ticks: f"climate of {ticks[0]}")
     monkeypatch.setattr(RelivedLife, "_with_accidents", lambda self, stretch, *given: stretch)
+    monkeypatch.setattr(RelivedLife, "_given", lambda self, ticks: f"births of {ticks[0]}")
     monkeypatch.setattr(Rates, "of", lambda climate: climate)
     monkeypatch.setattr(relived, "_as_stored", lambda alone, instant: {"instant": instant})
     life = life_of(0)
@@ -126,7 +129,12 @@ def test_a_life_is_lived_to_its_recorded_end_or_to_an_earlier_death(
     assert all(len(each.tick) == len(each.cause) == len(each.energy) for each in parts)
     firsts = [41, 45, 49][: len(lived)]
     assert alone.asked == [
-        (number, list(range(first, first + 4)), f"climate of {first}", min(4, 51 - first))
+        (
+            number,
+            list(range(first, first + 4)),
+            *(f"{each} of {first}" for each in ("climate", "births")),
+            min(4, 51 - first),
+        )
         for number, first in enumerate(firsts)
     ]
     assert alone.closed == 1

@@ -113,10 +113,11 @@ def test_a_description_has_what_readers_need(kept: int | None, mates: bool) -> N
     heredity = SimpleNamespace(
         mutation=mutation, layout=layout, recombination="crossover" if mates else None
     )
-    law: Any = SimpleNamespace(heredity=heredity, beginning=(("hazard", 0.5),))
+    act = "act" if mates else None
+    law: Any = SimpleNamespace(heredity=heredity, act=act, beginning=(("hazard", 0.5),))
     habitat: Any = SimpleNamespace(rate=None, tallies=("score", "lives"))
     about = Description.of(law, habitat, {"a.py": "1"})
-    assert (about.moments, about.mates) == (kept or 0, mates)
+    assert (about.moments, about.mates, about.endowed) == (kept or 0, mates, mates)
     assert (about.rate, about.tallies, about.notes) == (None, ("score", "lives"), ("step",))
     assert about.beginning == {"hazard": 0.5}
     assert about.blocks == {"input": (4, 5), "output": (2,)}

@@ -135,8 +135,10 @@ def test_the_length_of_saved_states_is_no_part_of_the_form_of_an_array() -> None
     assert fork._form("bodies.none", arrays) == ()
 
 
-@pytest.mark.parametrize("mates", [False, True])
-def test_births_of_the_living_are_in_order_of_events_and_have_their_own_notes(mates: bool) -> None:
+@pytest.mark.parametrize(("mates", "endowed"), [(False, False), (True, False), (True, True)])
+def test_births_of_the_living_are_in_order_of_events_and_have_their_own_notes(
+    mates: bool, endowed: bool
+) -> None:
     """Births are in order of ticks, and those of one tick are in order of worlds and cells.
 
     Their mates are left out, since the living are the roots of later lines.
@@ -151,10 +153,12 @@ def test_births_of_the_living_are_in_order_of_events_and_have_their_own_notes(ma
     )
     organisms = SimpleNamespace(notes=notes)
     engine: Any = SimpleNamespace(
-        law=SimpleNamespace(cells=CELLS, heredity=heredity),
+        law=SimpleNamespace(cells=CELLS, heredity=heredity, act="act" if endowed else None),
         state=SimpleNamespace(world=SimpleNamespace(organisms=organisms)),
     )
-    rows = birth_columns(mates, ("step", "way")).unpacked(fork._birth_rows(lives, engine))
+    source: Any = SimpleNamespace(endowments_of=lambda lives: 100 * lives.world + lives.born)
+    words = fork._birth_rows(source, lives, engine)
+    rows = birth_columns(mates, ("step", "way"), endowed).unpacked(words)
     assert rows["tick"].tolist() == [4, 4, 7, 9]
     assert rows["cell"].tolist() == [3, 9, 5, 1]
     assert rows["id"].tolist() == [0, 0, 1, 1]
@@ -162,6 +166,7 @@ def test_births_of_the_living_are_in_order_of_events_and_have_their_own_notes(ma
     assert rows["step"].tolist() == [6, 18, 10, 2]
     assert rows["way"].tolist() == [7, 19, 11, 3]
     assert rows.get("mate", np.zeros(0)).tolist() == ([-1] * 4 if mates else [])
+    assert rows.get("endowment", np.zeros(0)).tolist() == ([4, 104, 107, 9] if endowed else [])
 
 
 @pytest.mark.parametrize(

@@ -5,8 +5,9 @@ from typing import Any
 import pytest
 
 from primordia.brains.contract import KNOWN as BRAINS
-from primordia.config import _check, load, parsed
+from primordia.config import load, parsed
 from primordia.errors import InputError
+from primordia.fitting import check
 from primordia.habitats.contract import Compound, Continuous, Discrete
 from primordia.settings.limits import Stop, checked
 from tests.toys import Organ
@@ -59,10 +60,10 @@ def test_the_last_world_may_have_the_largest_seed() -> None:
 
 def test_the_cells_of_all_worlds_are_limited() -> None:
     most = parsed({**MEADOW, "cells": 2**24, "seeds": 4, "seasons": []}, source="test")
-    _check(most)
+    check(most)
     more = most.model_copy(update={"cells": 2**24 - 1, "seeds": 5})
     with pytest.raises(InputError, match=rf"^cells x seeds: {5 * (2**24 - 1)} cells are more"):
-        _check(more)
+        check(more)
 
 
 def test_records_begin_after_the_tick_of_a_fork() -> None:

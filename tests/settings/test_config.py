@@ -137,7 +137,13 @@ def test_flags_override_the_file_and_the_file_overrides_the_task(
     assert (config.mutation["scale"], config.mutation["probability"]) == (0.125, 0.25), "flag, file"
     assert (config.stop.ticks, config.stop.until) == (2, None), "flags"
     assert config.placement.rule == "empty-only"
-    expected = {"kind": "recurrent", "efference": False, "hidden": 4, "biases": True}
+    expected = {
+        "kind": "recurrent",
+        "efference": False,
+        "interoception": False,
+        "hidden": 4,
+        "biases": True,
+    }
     assert config.brain == expected, "file, flag"
     assert config.mutation["blocks"]["input_bias"]["scale"] == 0.5, "a flag of a block"
     assert config.mutation["founder_scale"] == tasks()[TASK]["mutation"]["founder_scale"], "task"

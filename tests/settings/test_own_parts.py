@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 import tomli_w
 
-from primordia import config, own_code
+from primordia import config, fitting, own_code
 from tests.commands import complains, flags, here
 from tests.worlds import HOSTED
 
@@ -235,6 +235,6 @@ def test_an_environment_of_a_library_is_not_traced_before_a_run(
     def traced(*_: object) -> None:
         pytest.fail("the environment was traced")
 
-    monkeypatch.setattr(config, "check_arrays", traced)
+    monkeypatch.setattr(fitting, "check_arrays", traced)
     table = {"name": "gymnax", "env": "Catch-bsuite"}
     config.validated({"task": "catch", "habitat": table}, source="test")

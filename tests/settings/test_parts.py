@@ -19,13 +19,14 @@ TASK = "CartPole-survival"
 
 
 def test_a_brain_has_its_own_settings_with_defaults_filled_in() -> None:
-    common = {"efference": False, "biases": False}
+    common = {"efference": False, "interoception": False, "biases": False}
     assert config(MEADOW).brain == {"kind": "recurrent", "hidden": 32, **common}
     assert config(MEADOW, brain={"kind": "linear"}).brain == {"kind": "linear", **common}
     other = config(MEADOW, brain={"kind": "tests.toys:Sliding", "width": 1})
     assert other.brain == {
         "kind": "tests.toys:Sliding",
         "efference": False,
+        "interoception": False,
         "width": 1,
         "channels": 3,
     }
@@ -69,7 +70,7 @@ def test_settings_of_an_older_version_are_read() -> None:
     for kind in ("recurrent", "feed-forward"):
         old = {**MEADOW, "brain": {"kind": kind, "hidden": 5}}
         made = validated(old, source="test").brain
-        assert made == {**old["brain"], "efference": False, "biases": False}
+        assert made == {**old["brain"], "efference": False, "interoception": False, "biases": False}
 
 
 def test_settings_are_read_without_the_code_of_the_brain() -> None:
@@ -79,7 +80,7 @@ def test_settings_are_read_without_the_code_of_the_brain() -> None:
 
 def test_a_part_does_not_take_settings_of_the_part_that_it_replaces() -> None:
     made = load(TASK, {"brain": {"kind": "linear"}}).brain
-    assert made == {"kind": "linear", "efference": False, "biases": False}
+    assert made == {"kind": "linear", "efference": False, "interoception": False, "biases": False}
     base = {"brain": {"kind": "gated", "hidden": 4}, "motor": {"kind": "direct", "sd": 0.5}}
     assert merged(base, {"brain": {"kind": "gated", "biases": True}})["brain"] == {
         "kind": "gated",

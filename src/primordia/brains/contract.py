@@ -40,6 +40,11 @@ class Brain(Settings, ABC):
         False,
         description="true: the brain also perceives the senses and its own command of the last tick",
     )
+    interoception: bool = Field(
+        False,
+        description="true: the brain also perceives the organism's energy, as a share of the store at"
+        " birth",
+    )
 
     @abstractmethod
     def blocks(self, senses: int, outputs: int) -> dict[str, Shape]:

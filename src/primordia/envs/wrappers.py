@@ -73,7 +73,7 @@ class Forager(gymnasium.Wrapper, RecordConstructorArgs):
         super().__init__(_without_limit(env))
         self._food, self._reward = food or _reward_of, reward
         values = Metabolism(**rules).model_dump()
-        self._rates = Rates(*(jnp.float32(values[name]) for name in Rates._fields))
+        self._rates = Rates(*(jnp.float32(values[name]) for name in Metabolism.model_fields))
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None

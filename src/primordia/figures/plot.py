@@ -25,6 +25,7 @@ KNOWN = {
     "space-time": "primordia.figures.spacetime:draw",
     "foraging": "primordia.figures.foraging:draw",
     "threshold": "primordia.figures.threshold:draw",
+    "investment": "primordia.figures.investment:draw",
 }
 Draw: TypeAlias = Callable[[Records, int], Figure | None]
 

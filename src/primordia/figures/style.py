@@ -17,6 +17,8 @@ from primordia.runs.lives import Lives
 
 COLUMN, PAGE = 3.4, 7.0
 """Widths in inches."""
+LINE, LETTER, GAP = 9, 4.2, 6
+"""Height of a line of a key, mean width of its letters, and space between its words, in points."""
 
 INK, SOFT, FAINT = "#222222", "#6b6b6b", "#d4d4d4"
 ORANGE, SKY, GREEN, YELLOW = "#e69f00", "#56b4e9", "#009e73", "#f0e442"
@@ -137,11 +139,28 @@ def curves(axes: Axes, x: np.ndarray, ys: np.ndarray, colour: str = BLUE) -> Non
 
 def title(axes: Axes, text: str, key: dict[str, str] | None = None) -> None:
     """Write the title of a panel, and below it a key: words in the colours of the things they name."""
-    axes.set_title(text, pad=13)
-    place: dict[str, Any] = {"xy": (0, 1), "xytext": (0, 4), "xycoords": axes.transAxes}
-    for word, colour in (key or {}).items():
-        put = axes.annotate(word, **place, textcoords="offset points", color=colour)
-        place = {"xy": (1, 0), "xytext": (6, 0), "xycoords": put, "va": "bottom"}
+    lines = _lines(axes, key or {})
+    height = 4 + LINE * len(lines)
+    axes.set_title(text, pad=height)
+    for line in lines:
+        height -= LINE
+        place: dict[str, Any] = {"xy": (0, 1), "xytext": (0, height), "xycoords": axes.transAxes}
+        for word, colour in line.items():
+            put = axes.annotate(word, **place, textcoords="offset points", color=colour)
+            place = {"xy": (1, 0), "xytext": (GAP, 0), "xycoords": put, "va": "bottom"}
+
+
+def _lines(axes: Axes, key: dict[str, str]) -> list[dict[str, str]]:
+    """Return a key in lines that are not wider than the panel; a longer one would crush the panels."""
+    grid, figure = axes.get_subplotspec(), axes.get_figure(root=True)
+    assert figure is not None
+    columns = 1 if grid is None else grid.get_gridspec().ncols
+    room, lines = 0.85 * 72 * figure.get_figwidth() / columns, [dict[str, str]()]
+    for word, colour in key.items():
+        if lines[-1] and sum(GAP + LETTER * len(each) for each in [*lines[-1], word]) > room:
+            lines.append({})
+        lines[-1][word] = colour
+    return lines
 
 
 def worlds_key(count: int) -> dict[str, str]:

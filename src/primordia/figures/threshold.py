@@ -18,7 +18,8 @@ def draw(run: Records, world: int) -> Figure | None:
     longest = max(map(len, worlds))
     windows = int(np.clip(longest // ENOUGH, 1, WINDOWS))
     edges = np.linspace(0, longest, windows + 1).astype(np.int64)
-    found = [over_births(number, each, edges) for number, each in enumerate(worlds)]
+    acts = run.config.act is not None
+    found = [over_births(number, each, edges, acts) for number, each in enumerate(worlds)]
     if windows < 2 or all(each.held is None for of_world in found for each in of_world):
         return None
     middle = (edges[:-1] + edges[1:]) / 2

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from primordia.history.ancestry import children
 from primordia.law.world import BirthCause
 from primordia.runs.lives import LATE, Lives
 
@@ -25,6 +26,8 @@ class Families:
     """row of the child's parent, int64"""
     mutant: np.ndarray
     """bool: the child is a mutant, otherwise a copy"""
+    worth: np.ndarray
+    """what is compared: ticks lived so far by each of the `lives`, or its children so far, int64 (L,)"""
 
     @property
     def lifespans(self) -> tuple[np.ndarray, np.ndarray]:
@@ -38,27 +41,32 @@ class Families:
 
     def as_long(self) -> tuple[np.ndarray, np.ndarray]:
         """Return which children live at least as long as their parents, and which results are
-        known.
+        known; if `worth` is the number of children, which have at least as many.
 
         The result of a pair with a living organism is known in two cases. If only the parent is
         dead, the child counts as living at least as long once its age has reached the parent's
         lifespan. If only the child is dead, it counts as shorter-lived if it died younger than the
         parent is now.
         """
-        child, parent = self.lifespans
+        child, parent = self.worth[self.child], self.worth[self.parent]
         longer = (child >= parent) & self.lives.died[self.parent]
         shorter = (child < parent) & self.lives.died[self.child]
         return longer, longer | shorter
 
 
-def families(lives: Lives, after: float = LATE) -> Families:
+def families(lives: Lives, after: float = LATE, acts: bool = False) -> Families:
     """Return the families of one world whose children were born late; see `Lives.late`."""
-    return families_of(lives, np.flatnonzero(lives.late(after)))
+    return families_of(lives, np.flatnonzero(lives.late(after)), acts)
 
 
-def families_of(lives: Lives, born: np.ndarray) -> Families:
-    """Return the families of one world whose children are among the rows `born`, int64."""
+def families_of(lives: Lives, born: np.ndarray, acts: bool = False) -> Families:
+    """Return the families of one world whose children are among the rows `born`, int64.
+
+    Their worth is their lifespan, since all replicate at the same rate; if replication is an act, it is
+    their number of children.
+    """
     has_parent = (lives.birth_cause != BirthCause.FOUNDER) & (lives.parent_row >= 0)
     child = born[has_parent[born]]
     mutant = lives.birth_cause[child] == BirthCause.MUTANT
-    return Families(lives, born, child, lives.parent_row[child], mutant)
+    worth = children(lives.parent_row) if acts else lives.lifespan
+    return Families(lives, born, child, lives.parent_row[child], mutant, worth)

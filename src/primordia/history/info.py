@@ -7,7 +7,7 @@ import numpy as np
 
 from primordia.history.extinctions import extinctions_of
 from primordia.history.threshold import Threshold, threshold
-from primordia.law.metabolism import break_even
+from primordia.law.metabolism import ONE, break_even
 from primordia.law.world import Cause
 from primordia.runs.arrays import NEVER
 from primordia.runs.digest import digests
@@ -28,8 +28,10 @@ def info(run: Records) -> dict[str, Any]:
     ticks, and the habitat's counts (`tallies`) are those of the living. `break_even` holds the food
     per tick and the food per second that keep energy constant, without effort, under the present
     climate. `tries_per_life` tells how often an organism tries to copy itself in a life of mean
-    length, at the present rate of replication. If the number is below one, lineages die out. The
-    fields of a single world also appear at the top level.
+    length, at the present rate of replication. If the number is below one, lineages die out. If
+    replication is an act, it is the mean number of tries so far, and `act` counts the tries, those that
+    failed, the children, and the energy invested in them. The fields of a single world also appear at
+    the top level.
     """
     config, progress = run.config, run.progress
     worlds = [
@@ -91,11 +93,13 @@ def _world(run: Records, world: int, crashed: int, limit: dict[str, Any]) -> dic
         "organism_ticks": counted("organism_ticks"),
         "mean_age": float(ages.mean()) if len(ages) else None,
         "oldest_age": int(ages.max()) if len(ages) else None,
-        "tries_per_life": _tries(_climate(arrays, world)["replication"], counted),
+        "tries_per_life": _tries(_climate(arrays, world), counted),
         "saturation": _moment(counted("saturated"), counted("saturated_births")),
         "fixation": _moment(counted("fixed"), counted("fixed_births")),
         "threshold": limit,
     }
+    if config.act is not None:
+        numbers["act"] = _act(counted)
     if (tally := arrays.get(TALLY)) is not None and alive.any():
         numbers["tallies"] = _tallies(run.description.tallies, tally[here][alive])
     if config.metabolism is not None:
@@ -105,10 +109,26 @@ def _world(run: Records, world: int, crashed: int, limit: dict[str, Any]) -> dic
     return numbers
 
 
-def _tries(replication: float, counted: Callable[[str], int]) -> float | None:
+def _tries(climate: dict[str, float], counted: Callable[[str], int]) -> float | None:
     """Return the tries to replicate in a life of mean length; None if there were no births."""
-    births = counted("births")
-    return replication * counted("organism_ticks") / births if births else None
+    if not (births := counted("births")):
+        return None
+    if "replication" not in climate:
+        return counted("acts.tries") / births
+    return climate["replication"] * counted("organism_ticks") / births
+
+
+def _act(counted: Callable[[str], int]) -> dict[str, float | None]:
+    """Return the tries of a world, and the energy invested in children."""
+    tries, births = counted("acts.tries"), counted("acts.births")
+    invested = counted("acts.invested") / ONE
+    return {
+        "tries": tries,
+        "failed": tries - births,
+        "children": births,
+        "invested": invested,
+        "mean_endowment": invested / births if births else None,
+    }
 
 
 def _moment(tick: int, births: int) -> dict[str, int] | None:

@@ -50,7 +50,7 @@ def _one_world(world: dict[str, Any]) -> list[str]:
         lines.append(f"    tallies of the living: {_tallies(world['tallies'])}")
     if world["fixation"]:
         lines.append(f"    one common ancestor since {_when(world['fixation'])}")
-    lines += _threshold([world])
+    lines += _act([world]) + _threshold([world])
     if world["saturation"]:
         return [*lines, f"    saturated at {_when(world['saturation'])}"]
     return [*lines, "    not saturated"]
@@ -81,11 +81,23 @@ def _break_even(worlds: list[dict[str, Any]]) -> list[str]:
 def _too_few_copies(worlds: list[dict[str, Any]]) -> list[str]:
     """Return a line that says why worlds die out, if organisms replicate less than once in a life."""
     births = sum(world["births"] for world in worlds)
-    if not births or not any(world["extinctions"] for world in worlds):
+    if not births or not any(world["extinctions"] for world in worlds) or "act" in worlds[0]:
         return []
     tries = sum(world["births"] * (world["tries_per_life"] or 0) for world in worlds) / births
     few = f"  an organism tries to copy itself {tries:.2g} times in its life; raise `replication`"
     return [f"{few}, or lineages die out"] if tries < 1 else []
+
+
+def _act(worlds: list[dict[str, Any]]) -> list[str]:
+    """Return a line on tries to copy and on endowments, if replication is an act."""
+    acts = [world["act"] for world in worlds if "act" in world]
+    if not acts:
+        return []
+    tries, failed, children, invested = (
+        sum(each[name] for each in acts) for name in ("tries", "failed", "children", "invested")
+    )
+    given = f"; a child begins with {invested / children:,.3g} on average" if children else ""
+    return [f"    {tries:,} tries to copy, {failed:,} of them failed{given}"]
 
 
 def _tallies(tallies: dict[str, dict[str, float]]) -> str:
@@ -114,6 +126,7 @@ def _all_worlds(worlds: list[dict[str, Any]]) -> list[str]:
         f"{total('extinctions'):,}{risen}",
         f"    {_share(worlds, 'fixation', 'with one common ancestor')}",
         f"    {_share(worlds, 'saturation', 'saturated')}",
+        *_act(worlds),
         *_threshold(worlds),
     ]
 

@@ -3,7 +3,8 @@
 A good line has an advantage s in lifespan. A share p of its children mutate, and a share v of the
 mutants are as good as their parent. The line persists if s (1 - p (1 - v)) is above 1. This is
 Eigen's threshold (1971), rearranged for organisms that all replicate at the same rate and differ in
-lifespan.
+lifespan. If replication is an act, organisms also differ in how often they copy themselves: then the
+number of children takes the place of the lifespan.
 """
 
 from dataclasses import asdict, dataclass
@@ -29,10 +30,10 @@ class Threshold:
     """p, the share of children that are mutants"""
     as_good: float | None
     """v: the share of good parents' mutants that live as long as the parent, divided by the same
-    share of the parents' copies; at most 1"""
+    share of the parents' copies; at most 1; if replication is an act, that have as many children"""
     advantage: float | None
     """s: number of ticks lived per death among copies of good parents, divided by the same ratio
-    among all organisms born"""
+    among all organisms born; if replication is an act, children per death"""
 
     @property
     def held(self) -> float | None:
@@ -58,11 +59,11 @@ def threshold(run: Records, after: float = LATE) -> list[Threshold]:
         run: the run, or an arm.
         after: share of a world's births after which a birth is late.
     """
-    worlds = enumerate(run.lives.by_world())
-    return [_measured(world, families(lives, after)) for world, lives in worlds]
+    worlds, acts = enumerate(run.lives.by_world()), run.config.act is not None
+    return [_measured(world, families(lives, after, acts)) for world, lives in worlds]
 
 
-def over_births(world: int, lives: Lives, edges: np.ndarray) -> list[Threshold]:
+def over_births(world: int, lives: Lives, edges: np.ndarray, acts: bool = False) -> list[Threshold]:
     """Measure the error threshold of one world in successive bins of births.
 
     Organisms that were alive at a fork do not count, since the short lives of their generation are not
@@ -72,21 +73,20 @@ def over_births(world: int, lives: Lives, edges: np.ndarray) -> list[Threshold]:
         world: number of the world.
         lives: the world's lives.
         edges: edges of the bins, as rows in birth order, int64 (B + 1,), ascending.
+        acts: whether replication is an act.
     """
     bins = (np.arange(low, min(high, len(lives))) for low, high in pairwise(edges.tolist()))
-    return [_measured(world, families_of(lives, rows[~lives.inherited[rows]])) for rows in bins]
+    own = (rows[~lives.inherited[rows]] for rows in bins)
+    return [_measured(world, families_of(lives, rows, acts)) for rows in own]
 
 
 def _measured(world: int, found: Families) -> Threshold:
-    lives = found.lives
     if not len(found.child):
         return Threshold(world, None, None, None)
-    good = found.lifespans[1] >= np.quantile(lives.lifespan[found.born], BEST)
+    good = found.worth[found.parent] >= np.quantile(found.worth[found.born], BEST)
     mutants, copies = good & found.mutant, good & ~found.mutant
     of_mutants, of_same = (_share_as_long(found, which) for which in (mutants, copies))
-    of_copies, of_all = (
-        _ticks_per_death(lives, rows) for rows in (found.child[copies], found.born)
-    )
+    of_copies, of_all = (_per_death(found, rows) for rows in (found.child[copies], found.born))
     return Threshold(
         world,
         mutated=float(found.mutant.mean()),
@@ -101,7 +101,7 @@ def _share_as_long(found: Families, which: np.ndarray) -> float | None:
     return int((as_long & which).sum()) / count if count >= LEAST else None
 
 
-def _ticks_per_death(lives: Lives, rows: np.ndarray) -> float | None:
-    """Return the ticks lived for each death. The ticks of the living count too."""
-    deaths = int(lives.died[rows].sum())
-    return float(lives.lifespan[rows].sum() / deaths) if deaths else None
+def _per_death(found: Families, rows: np.ndarray) -> float | None:
+    """Return the ticks lived, or the children born, for each death. Those of the living count too."""
+    deaths = int(found.lives.died[rows].sum())
+    return float(found.worth[rows].sum() / deaths) if deaths else None

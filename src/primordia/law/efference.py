@@ -23,11 +23,12 @@ class Efferent(Brain):
 
     def blocks(self, senses: int, outputs: int) -> dict[str, Shape]:
         """Return the blocks of the inner brain with all its senses."""
-        return self.inner.blocks(2 * senses + outputs, outputs)
+        return self.inner.blocks(2 * senses + self.action.size, outputs)
 
     def memory(self, senses: int, outputs: int) -> int:
         """Return the length of the inner memory, of the senses and of the command together."""
-        return self.inner.memory(2 * senses + outputs, outputs) + senses + outputs
+        last = senses + self.action.size
+        return self.inner.memory(senses + last, outputs) + last
 
     def innate(self) -> Brain | None:
         """Return the inner brain without learning, with the same senses; None if it is the same."""

@@ -11,7 +11,6 @@ import jax.numpy as jnp
 from jax import Array, lax
 
 from primordia.law.columns import Columns
-from primordia.law.heredity import Heredity
 from primordia.law.law import Law
 from primordia.law.world import Cause
 
@@ -35,15 +34,17 @@ counted since the beginning of the world; the other totals are over the living. 
 in 1/1024 units, two's complement."""
 
 
-def birth_columns(mates: bool, notes: tuple[str, ...]) -> Columns:
-    """Return the columns of a birth: the common ones, the mate if there are mates, and the notes."""
+def birth_columns(mates: bool, notes: tuple[str, ...], endowed: bool = False) -> Columns:
+    """Return the columns of a birth: the common ones, the mate if there are mates, the endowment if
+    parents pay one, and the notes."""
     own = ("mate",) if mates else ()
-    return BIRTHS.plus(*own, *notes, pairs=own)
+    return BIRTHS.plus(*own, *(("endowment",) if endowed else ()), *notes, pairs=own)
 
 
-def births_of(heredity: Heredity) -> Columns:
-    """Return the columns of births under a heredity."""
-    return birth_columns(heredity.recombination is not None, heredity.mutation.notes)
+def births_of(law: Law) -> Columns:
+    """Return the columns of births under a law."""
+    mates = law.heredity.recombination is not None
+    return birth_columns(mates, law.heredity.mutation.notes, law.act is not None)
 
 
 def sample_columns(rates: tuple[str, ...]) -> Columns:
@@ -81,7 +82,7 @@ def empty(law: Law) -> Events:
         return Rows(jnp.zeros((capacity, columns.width), jnp.uint32), jnp.int32(0))
 
     return Events(
-        births=empty_list(cells, 1 << 15, births_of(law.heredity)),
+        births=empty_list(cells, 1 << 15, births_of(law)),
         deaths=empty_list(cells, 1 << 15, DEATHS),
         samples=empty_list(law.worlds, 1 << 10, sample_columns(law.rates)),
     )

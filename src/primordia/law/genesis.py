@@ -6,6 +6,7 @@ from jax import Array, lax
 
 from primordia.compiled import shared
 from primordia.law import moments
+from primordia.law.act import Acts
 from primordia.law.law import Law
 from primordia.law.seasons import ratchets
 from primordia.law.world import Cause, Climate, Looks, Organisms, World, Worlds
@@ -38,6 +39,7 @@ def empty_worlds(law: Law, seed: Wide) -> World:
         fixed_births=never((count,)),
         climate=initial_climate(law, count),
         looks=initial_looks(law, count, 0),
+        acts=None if law.act is None else Acts(*(zero((count,)) for _ in Acts._fields)),
     )
     genome = {
         name: jnp.zeros((cells, *shape), jnp.float32) for name, shape in law.heredity.layout.blocks

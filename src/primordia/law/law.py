@@ -6,12 +6,14 @@ from functools import cached_property
 from typing import Literal
 
 import jax.numpy as jnp
+import numpy as np
 from jax import Array
 
 from primordia.brains.contract import Brain
 from primordia.habitats.contract import Action
+from primordia.law.act import Act
 from primordia.law.heredity import Heredity
-from primordia.law.metabolism import Metabolism
+from primordia.law.metabolism import ONE, Metabolism
 from primordia.law.motor import Motor
 from primordia.law.placement import Placement
 from primordia.law.seasons import Ratchet, Schedule
@@ -27,13 +29,17 @@ class Law:
     brain: Brain
     heredity: Heredity
     senses: int
-    """S, the numbers that an organism perceives"""
+    """S, the numbers that an organism perceives; see `perceived`"""
+    interoception: bool
+    """whether an organism perceives its energy"""
     memory: int
     """M, the length of an organism's memory"""
     action: Action
     motor: Motor
     placement: Placement
     metabolism: Metabolism | None
+    act: Act | None
+    """None: organisms replicate spontaneously, with the probability `replication`"""
     beginning: tuple[tuple[str, float], ...]
     """settings that seasons may change: dotted name -> value at the beginning"""
     genesis: Literal["one", "fill"]
@@ -72,6 +78,14 @@ class Law:
             names = self.heredity.mutation.governed(name_in_part, self.heredity.layout)
             return [f"mutation.{name}" for name in names]
         return [setting] if setting in self.rates else []
+
+    def perceived(self, senses: Array, energy: Array) -> Array:
+        """Return what N organisms perceive, float32 (N, S): the habitat's senses (N, S'), followed by
+        their energy, int32 (N,), as a share of the store at birth, if they have interoception."""
+        if not self.interoception:
+            return senses
+        steps = np.float32(ONE * dict(self.beginning)["metabolism.store"])
+        return jnp.concatenate([senses, (energy.astype(jnp.float32) / steps)[:, None]], axis=1)
 
     @property
     def has_hazard(self) -> bool:

@@ -13,6 +13,7 @@ from jax import Array
 from primordia.brains.contract import Genome
 from primordia.habitats.bodies import not_finite
 from primordia.habitats.contract import Bodies, Outcome
+from primordia.law.act import Tries
 from primordia.law.law import Law
 from primordia.law.metabolism import Rates, add, food_eaten, metabolise
 from primordia.law.motor import chosen
@@ -34,6 +35,8 @@ class Thought(NamedTuple):
     """int32 (N,) or float32 (N, K); see `habitats.contract.Action`"""
     faulty: Array
     """bool (N,): an output of the brain is not finite"""
+    copying: Array | None = None
+    """float32 (N, `Act.outputs`): outputs that decide about copies; None unless replication is an act"""
 
 
 class Vitals(NamedTuple):
@@ -44,7 +47,13 @@ class Vitals(NamedTuple):
 
 
 def think(
-    law: Law, genome: Genome, memory: Array, senses: Array, key: Wide, cell: Array
+    law: Law,
+    genome: Genome,
+    memory: Array,
+    senses: Array,
+    energy: Array,
+    key: Wide,
+    cell: Array,
 ) -> Thought:
     """Advance brains and motors by one tick.
 
@@ -52,13 +61,17 @@ def think(
         law: the law.
         genome: blocks of weights, float32 (N, *shape) each.
         memory: float32 (N, M).
-        senses: float32 (N, S).
+        senses: senses from the habitat, float32 (N, S'); see `Law.perceived`.
+        energy: int32 (N,), fixed point.
         key: key of each organism's motor in this tick, (N,).
         cell: each organism's cell within its world, int32 (N,).
     """
-    memory, output = law.brain(genome, memory, senses)
+    memory, output = law.brain(genome, memory, law.perceived(senses, energy))
     faulty = (~jnp.isfinite(output)).any(axis=1)
-    return Thought(memory, act(law, key, cell, output), faulty)
+    copying = None
+    if law.act is not None:
+        output, copying = output[:, : law.action.size], output[:, law.action.size :]
+    return Thought(memory, act(law, key, cell, output), faulty, copying)
 
 
 def act(law: Law, key: Wide, cell: Array, output: Array) -> Array:
@@ -98,6 +111,28 @@ def judge(
     cause = jnp.where(outcome.fatal, Cause.FATAL, cause)
     fault = faulty | has_failed(bodies, outcome)
     return Vitals(energy, eaten), jnp.where(fault, Cause.FAULT, cause)
+
+
+def try_to_copy(
+    law: Law, vitals: Vitals, cause: Array, copying: Array, rates: Rates
+) -> tuple[Vitals, Tries]:
+    """Let the survivors of a tick try to copy themselves, if replication is an act.
+
+    Args:
+        law: the law, with an act.
+        vitals: energy and food after the tick.
+        cause: cause of death or -1, as from `judge`; the dead do not try.
+        copying: `Thought.copying` of the tick.
+        rates: as in `judge`.
+
+    Returns:
+        energy and food after the price is paid; the tries.
+    """
+    assert law.act is not None
+    assert rates.price is not None
+    tries = law.act.tries(copying, vitals.energy, rates.price)
+    tries = Tries(*(jnp.where(cause < 0, each, jnp.zeros_like(each)) for each in tries))
+    return vitals._replace(energy=vitals.energy - tries.price), tries
 
 
 def has_failed(bodies: Bodies, outcome: Outcome) -> Array:

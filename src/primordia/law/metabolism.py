@@ -57,18 +57,21 @@ def break_even(drain: float, gain: float) -> float | None:
 
 
 class Rates(NamedTuple):
-    """The present settings of the metabolism for each organism: float32, (N,) or broadcast to it."""
+    """The present prices and gains of each organism: float32, (N,) or broadcast to it."""
 
     store: Array
     drain: Array
     gain: Array
     effort_cost: Array
     cap: Array
+    price: Array | None = None
+    """energy that a try to copy costs; None unless replication is an act"""
 
     @classmethod
     def of(cls, climate: Mapping[str, Any]) -> "Rates":
-        """Return the metabolism's settings in a climate."""
-        return cls(*(climate[f"metabolism.{name}"] for name in cls._fields))
+        """Return these settings in a climate."""
+        own = (climate[f"metabolism.{name}"] for name in Metabolism.model_fields)
+        return cls._make([*own, climate.get("replication.price")])
 
 
 def metabolise(energy: Array, food: Array | None, effort: Array | None, rates: Rates) -> Array:

@@ -50,12 +50,13 @@ def remember(law: Law, world: World, senses: Array, live_worlds: Array) -> World
     Args:
         law: the law.
         world: the world at the end of a tick, with its newborn.
-        senses: senses of all cells for the next tick, float32 (C, S).
+        senses: senses of all cells for the next tick, as from the habitat, float32 (C, S').
         live_worlds: worlds that were running in the tick, bool (W,).
     """
     organisms, rule = world.organisms, law.heredity.mutation.moments
     if rule is None or organisms.moments is None:
         return world
+    senses = law.perceived(senses, organisms.energy)
     due = moment_due(law, world.worlds, live_worlds)
     place = modulo(world.worlds.tick, rule.every * rule.kept) // rule.every
 

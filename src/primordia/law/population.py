@@ -49,9 +49,7 @@ def settle(
     keys = turnover.birth_keys(law, worlds)
     world, events, newborn = lax.cond(
         fates.eventful | lifeless(law, world, running).any(),
-        lambda world, events: turnover.turnover(
-            law, world, events, running, fates.wants, fates.cause, keys
-        ),
+        lambda world, events: turnover.turnover(law, world, events, running, fates, keys),
         lambda world, events: (world, events, none_born),
         World(organisms, worlds),
         events,

@@ -27,6 +27,8 @@ class Fates(NamedTuple):
     """int32: cause of death, or -1"""
     wants: Array
     """bool: the organism lives on, and replicates in this tick if it finds a cell"""
+    endowment: Array | None
+    """int32, fixed point: what a child of this organism begins with; None unless replication is an act"""
     eventful: Array
     """bool (): an organism dies, or may be born"""
 
@@ -35,7 +37,8 @@ def no_fates(law: Law) -> Fates:
     """Return the fates of a tick without deaths and births."""
     cells = law.worlds * law.cells
     none = jnp.zeros(cells, bool)
-    return Fates(jnp.full(cells, -1, jnp.int32), none, jnp.zeros((), bool))
+    endowment = None if law.act is None else jnp.zeros(cells, jnp.int32)
+    return Fates(jnp.full(cells, -1, jnp.int32), none, endowment, jnp.zeros((), bool))
 
 
 def keys_of(worlds: Worlds, ticks: Array) -> Streams:
@@ -50,7 +53,8 @@ def keys_of(worlds: Worlds, ticks: Array) -> Streams:
 def think(law: Law, world: World, senses: Array, keys: Streams) -> Thought:
     """Advance the brains and motors of all cells by one tick, with senses float32 (C, S)."""
     organisms, key = world.organisms, keys[Purpose.MOTOR].map(law.per_cell)
-    return life.think(law, organisms.genome, organisms.memory, senses, key, law.cell_numbers)
+    genome, memory, energy = organisms.genome, organisms.memory, organisms.energy
+    return life.think(law, genome, memory, senses, energy, key, law.cell_numbers)
 
 
 def judge(
@@ -77,9 +81,13 @@ def judge(
         world with memory, energy and food brought up to date; fates.
     """
     organisms, worlds = world
-    climate = law.in_cells(worlds.climate)
-    vitals = Vitals(organisms.energy, organisms.eaten)
-    vitals, cause = life.judge(law, vitals, thought.faulty, bodies, outcome, Rates.of(climate))
+    climate, tries = law.in_cells(worlds.climate), None
+    vitals, rates = Vitals(organisms.energy, organisms.eaten), Rates.of(climate)
+    vitals, cause = life.judge(law, vitals, thought.faulty, bodies, outcome, rates)
+    if worlds.acts is not None and thought.copying is not None:
+        vitals, tries = life.try_to_copy(law, vitals, cause, thought.copying, rates)
+        tried = law.by_world(tries.tried & active)
+        worlds = worlds._replace(acts=worlds.acts.tried(tried))
     organisms = organisms._replace(memory=thought.memory, **vitals._asdict())
     if outcome.food is not None:
         worlds = worlds._replace(food=worlds.food + _food(law, outcome.food, active))
@@ -87,11 +95,15 @@ def judge(
         struck = _drawn(law, keys[Purpose.HAZARD], climate["hazard"])
         cause = jnp.where(struck & (cause < 0), Cause.HAZARD, cause)
     cause = jnp.where(active, cause, -1)
-    replicates = _drawn(law, keys[Purpose.REPLICATE], climate["replication"])
+    if tries is None:
+        replicates = _drawn(law, keys[Purpose.REPLICATE], climate["replication"])
+    else:
+        replicates = tries.tried
     wants = replicates & active & (cause < 0)
     room = law.placement.room(law.by_world(organisms.alive)).ravel()
     eventful = ((cause >= 0) | (wants & room)).any()
-    return World(organisms, worlds), Fates(cause, wants, eventful)
+    endowment = None if tries is None else tries.endowment
+    return World(organisms, worlds), Fates(cause, wants, endowment, eventful)
 
 
 def _food(law: Law, food: Array, active: Array) -> Wide:

@@ -18,6 +18,7 @@ from primordia.law.heredity import Birth, Newborn
 from primordia.law.law import Law
 from primordia.law.metabolism import to_fixed_point
 from primordia.law.moments import change_in
+from primordia.law.tick import Fates
 from primordia.law.world import BirthCause, Cause, Organisms, Remembered, World, Worlds
 from primordia.mutations.contract import Draws
 from primordia.random.keys import Purpose, Streams, below, bits, bits_if, streams
@@ -37,6 +38,8 @@ class Births(NamedTuple):
     """birth number within the world"""
     survives: Array
     """bool: an organism that was alive before the tick lives on in this cell"""
+    energy: Array
+    """int32, fixed point: what a newborn in this cell begins with"""
 
 
 class _Inherited(NamedTuple):
@@ -59,8 +62,7 @@ def turnover(
     world: World,
     events: Events,
     running: Array,
-    wants: Array,
-    cause: Array,
+    fates: Fates,
     keys: Streams,
 ) -> tuple[World, Events, Array]:
     """Carry out the deaths and births of one tick.
@@ -70,24 +72,24 @@ def turnover(
         world: the world; `worlds.tick` is the number of the tick that ends.
         events: the lists to which births and deaths are added.
         running: worlds that run, bool (W,).
-        wants: survivors that replicate if they find a cell, bool (C,).
-        cause: cause of each organism's death, or -1: int32 (C,).
+        fates: the fates of the tick.
         keys: `birth_keys` of the tick.
 
     Returns:
         world, events, cells of the newborn (bool (C,)).
     """
-    organisms, worlds = world
-    parent = _place(law, keys[Purpose.PLACE], wants, organisms.alive)
+    parent = _place(law, keys[Purpose.PLACE], fates.wants, world.organisms.alive)
+    organisms, worlds = _endow(law, world, parent, fates.endowment)
+    cause = fates.cause
     cause = jnp.where(organisms.alive & (parent >= 0) & (cause < 0), Cause.REPLACED, cause)
     alive = (organisms.alive & (cause < 0)) | (parent >= 0)
     extinct = running & ~law.by_world(alive).any(axis=1)
     founded = _genesis(law, keys[Purpose.GENESIS], extinct).ravel()
     survives = organisms.alive & (cause < 0)
-    births = _births(law, worlds, parent, founded, survives)
+    births = _births(law, worlds, parent, founded, survives, fates.endowment)
 
     events = events._replace(deaths=_note_deaths(law, organisms, worlds, cause, events.deaths))
-    organisms, listed = _inherit(law, world, births, keys, events.births)
+    organisms, listed = _inherit(law, World(organisms, worlds), births, keys, events.births)
     organisms = _begin_lives(law, organisms, worlds, births, alive | founded)
     worlds = _count(law, worlds, organisms, births, cause, extinct)
     return World(organisms, worlds), events._replace(births=listed), births.newborn
@@ -105,6 +107,24 @@ def _place(law: Law, key: Wide, wants: Array, alive: Array) -> Array:
     return jnp.where(parent >= 0, parent + first, -1).ravel()
 
 
+def _endow(law: Law, world: World, parent: Array, endowment: Array | None) -> World:
+    """Let each parent, int32 (C,) or -1 as from `_place`, pay the endowment of its child.
+
+    A parent has at most one child in a tick.
+    """
+    organisms, worlds = world
+    if endowment is None or worlds.acts is None:
+        return world
+    cells = len(parent)
+    index = jnp.where(parent >= 0, parent, cells)
+    pays = jnp.zeros(cells, bool).at[index].set(True, mode="drop")
+    given = jnp.where(pays, endowment, 0)
+    return World(
+        organisms._replace(energy=organisms.energy - given),
+        worlds._replace(acts=worlds.acts.born(law.by_world(given))),
+    )
+
+
 def _genesis(law: Law, key: Wide, extinct: Array) -> Array:
     """Return the cells in which founders are born: bool (W, N)."""
     if law.genesis == "fill":
@@ -113,11 +133,21 @@ def _genesis(law: Law, key: Wide, extinct: Array) -> Array:
     return extinct[:, None] & (jnp.arange(law.cells)[None] == chosen[:, None])
 
 
-def _births(law: Law, worlds: Worlds, parent: Array, founded: Array, survives: Array) -> Births:
+def _births(
+    law: Law,
+    worlds: Worlds,
+    parent: Array,
+    founded: Array,
+    survives: Array,
+    endowment: Array | None,
+) -> Births:
     newborn = (parent >= 0) | founded
     rank = jnp.cumsum(law.by_world(newborn), axis=1, dtype=jnp.int32).ravel() - 1
     number = worlds.births.map(law.per_cell).plus(jnp.maximum(rank, 0))
-    return Births(newborn, founded, jnp.maximum(parent, 0), number, survives)
+    energy = to_fixed_point(law.in_cells(worlds.climate)["metabolism.store"])
+    if endowment is not None:
+        energy = jnp.where(parent >= 0, endowment[jnp.maximum(parent, 0)], energy)
+    return Births(newborn, founded, jnp.maximum(parent, 0), number, survives, energy)
 
 
 def _note_deaths(
@@ -229,10 +259,13 @@ def _birth_rows(
     organisms, worlds = world
     parent = organisms.number.take(births.parent[cells])
     cause = jnp.where(newborn.mutated, BirthCause.MUTANT, BirthCause.COPY)
-    none, own = never(cells.shape), {}
+    none = never(cells.shape)
+    own: dict[str, Array | Wide] = {}
     if mate is not None:
         own["mate"] = select(mate >= 0, organisms.number.take(jnp.maximum(mate, 0)), none)
-    return log.births_of(law.heredity).words(
+    if law.act is not None:
+        own["endowment"] = births.energy[cells]
+    return log.births_of(law).words(
         cell=cells,
         id=births.number.take(cells),
         parent=select(births.founded[cells], none, parent),
@@ -252,11 +285,10 @@ def _begin_lives(
     founders_child = (parent_branch.hi | parent_branch.lo) == 0
     branch = select(founders_child, births.number.plus(jnp.ones_like(newborn)), parent_branch)
     branch = select(births.founded, zero(newborn.shape), branch)
-    store = to_fixed_point(law.in_cells(worlds.climate)["metabolism.store"])
     return organisms._replace(
         alive=alive,
         memory=jnp.where(newborn[:, None], 0, organisms.memory),
-        energy=jnp.where(newborn, store, organisms.energy),
+        energy=jnp.where(newborn, births.energy, organisms.energy),
         eaten=jnp.where(newborn, 0, organisms.eaten),
         born=select(newborn, worlds.tick.map(law.per_cell), organisms.born),
         number=select(newborn, births.number, organisms.number),

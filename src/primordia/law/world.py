@@ -11,6 +11,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from primordia.brains.contract import Genome
+from primordia.law.act import Acts
 from primordia.random.wide import Wide, select, total, zero
 
 
@@ -123,6 +124,8 @@ class Worlds(NamedTuple):
     """births until fixation; `wide.never` before that"""
     climate: Climate
     looks: Looks
+    acts: Acts | None
+    """None unless replication is an act"""
 
 
 class World(NamedTuple):

@@ -13,6 +13,7 @@ from primordia.figures.population import COLOURS, LIVING, rates
 from primordia.figures.survival import COHORTS, quarters
 from primordia.history import series
 from primordia.history.foraging import foraging
+from primordia.history.investment import investment
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 
@@ -39,6 +40,7 @@ def panels(run: Records) -> list[Panel]:
         _rates(lives, time),
         _survival(lives),
         *_foraging(run),
+        *_investment(run),
         *_counts(run),
     ]
 
@@ -191,6 +193,15 @@ def _foraging(run: Records) -> list[Panel]:
         over_worlds("break-even", found.middle, enough, style.ORANGE, each=False),
     ]
     return [panel("Food", about, "time (ticks)", f"food in a {unit}", tables)]
+
+
+def _investment(run: Records) -> list[Panel]:
+    """Return the energy that parents give to their children, if replication is an act."""
+    if run.config.act is None or not np.isfinite((found := investment(run)).endowment).any():
+        return []
+    about = "The mean energy that a child begins with, over births."
+    tables = [over_worlds("endowment", found.middle, found.endowment, style.BLUE)]
+    return [panel("Energy given to a child", about, "organisms born so far", "endowment", tables)]
 
 
 def _counts(run: Records) -> list[Panel]:

@@ -35,6 +35,8 @@ class Description(BaseModel):
     """names of the mutation's notes"""
     mates: bool = False
     """whether children may have a second parent"""
+    endowed: bool = False
+    """whether parents pay an endowment for each child"""
     moments: int = Field(0, ge=0, le=2**16)
     """number of moments that an organism remembers for the mutation"""
     beginning: dict[str, Annotated[float, Field(ge=-LARGEST, le=LARGEST)]]
@@ -63,6 +65,7 @@ class Description(BaseModel):
             tallies=habitat.tallies,
             notes=law.heredity.mutation.notes,
             mates=law.heredity.recombination is not None,
+            endowed=law.act is not None,
             moments=0
             if law.heredity.mutation.moments is None
             else law.heredity.mutation.moments.kept,

@@ -69,7 +69,7 @@ def fork(
     living = _living(source.lives, before, source.config, at)
     after = _transplant(before, source.config, changed, at)
     recorder = recorder_for(after, out)
-    recorder.add("births", _birth_rows(living, after))
+    recorder.add("births", _birth_rows(source, living, after))
     progress = Progress(limits=changed.stop, wall_s=0.0, exact=after.chunks.exact)
 
     def save_origin() -> None:
@@ -142,13 +142,15 @@ def _living(lives: Lives, engine: Engine, config: Config, at: int) -> Lives:
     return living
 
 
-def _birth_rows(living: Lives, engine: Engine) -> np.ndarray:
+def _birth_rows(source: Archive, living: Lives, engine: Engine) -> np.ndarray:
     """Return the births of the living in the law's form, uint32 (n, words), in order of events."""
     living = living.take(np.lexsort((living.cell, living.world, living.born)))
     cell = living.world.astype(np.int64) * engine.law.cells + living.cell
     heredity, notes = engine.law.heredity, engine.state.world.organisms.notes
     own = {"mate": np.full(len(living), -1)} if heredity.recombination is not None else {}
-    return births_of(heredity).rows(
+    if engine.law.act is not None:
+        own["endowment"] = source.endowments_of(living)
+    return births_of(engine.law).rows(
         cell=cell,
         id=living.id,
         parent=living.parent,
@@ -166,7 +168,9 @@ def _transplant(before: Engine, old: Config, new: Config, at: int) -> Engine:
     fitting = {name for name in own if _form(name, arrays) == _form(name, own)}
     lasting = {name for name in own if not any(part in name for part in RENEWED)}
     if new.brain != old.brain or not lasting <= fitting:
-        raise InputError("a fork cannot change cells, seeds, senses, the brain or the habitat")
+        raise InputError(
+            "a fork cannot change cells, seeds, senses, the brain or its outputs, or the habitat"
+        )
     if new.mutation["kind"] != old.mutation["kind"]:
         fitting = {name for name in fitting if not any(part in name for part in OF_MUTATION)}
     after.load(own | {name: arrays[name] for name in fitting})

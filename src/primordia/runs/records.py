@@ -19,6 +19,7 @@ from primordia.config import Config
 from primordia.habitats.contract import AnyHabitat
 from primordia.law.heredity import Heredity
 from primordia.law.law import Law
+from primordia.law.metabolism import ONE
 from primordia.runs.arrays import WORLDS, read_count
 from primordia.runs.description import Description
 from primordia.runs.lives import Lives, joined
@@ -219,6 +220,11 @@ class Records:
         """Return the birth number of the mate at the births of some lives, int64 (L,); -1 without a
         mate."""
         return self._of_births(lives, "mate")[0] if self.schema.mates else np.full(len(lives), -1)
+
+    def endowments_of(self, lives: Lives) -> np.ndarray:
+        """Return the energy with which some lives began, int32 (L,), fixed point, if replication is an
+        act."""
+        return np.round(self._of_births(lives, "endowment")[0] * ONE).astype(np.int32)
 
     def _of_births(self, lives: Lives, *columns: str) -> list[np.ndarray]:
         """Return columns of the births of some lives, each (L,); -1 for a missing value."""

@@ -33,6 +33,8 @@ class Schema:
     """settings that seasons may change"""
     tallies: tuple[str, ...]
     """names of the habitat's counts"""
+    endowed: bool = False
+    """whether births have an endowment"""
 
     def __post_init__(self) -> None:
         """Raise InputError if a note, rate or tally has the name of another column."""
@@ -52,18 +54,19 @@ class Schema:
     @classmethod
     def of(cls, law: Law, tallies: tuple[str, ...]) -> "Schema":
         """Return the schema for a law and a habitat's tallies."""
-        mates = law.heredity.recombination is not None
-        return cls(law.cells, mates, law.heredity.mutation.notes, law.rates, tallies)
+        mates, endowed = law.heredity.recombination is not None, law.act is not None
+        return cls(law.cells, mates, law.heredity.mutation.notes, law.rates, tallies, endowed)
 
     @classmethod
     def described(cls, cells: int, about: Description) -> "Schema":
         """Return the schema for the description of a run."""
-        return cls(cells, about.mates, about.notes, tuple(about.beginning), about.tallies)
+        rates = tuple(about.beginning)
+        return cls(cells, about.mates, about.notes, rates, about.tallies, about.endowed)
 
     def columns(self, table: str) -> Columns:
         """Return the columns of a table, as the law and the tallies pack them into words."""
         if table == "births":
-            return birth_columns(self.mates, self.notes)
+            return birth_columns(self.mates, self.notes, self.endowed)
         if table == "deaths":
             return DEATHS.plus(*self.tallies)
         return sample_columns(self.rates).plus(*tally_columns(self.tallies))
@@ -90,7 +93,7 @@ class Schema:
         return pa.table({"world": world, **self._deaths(words, cell)})
 
     def _births(self, words: dict[str, np.ndarray], cell: np.ndarray) -> dict[str, Any]:
-        parent, mate = words["parent"], words.get("mate")
+        parent, mate, given = words["parent"], words.get("mate"), words.get("endowment")
         return {
             "id": words["id"],
             "parent": pa.array(parent, mask=parent == -1),
@@ -98,6 +101,7 @@ class Schema:
             "cell": cell,
             "cause": _named(words["cause"], BirthCause),
             **({} if mate is None else {"mate": pa.array(mate, mask=mate == -1)}),
+            **({} if given is None else {"endowment": given.view(np.int32) / ONE}),
             **{name: words[name].view(np.int32) for name in self.notes},
         }
 
@@ -135,7 +139,7 @@ class Schema:
 @cache
 def _own_columns() -> dict[str, set[str]]:
     """Return the names of columns and of words that each table has in every run."""
-    plain = Schema(cells=2, mates=True, notes=(), rates=(), tallies=())
+    plain = Schema(cells=2, mates=True, notes=(), rates=(), tallies=(), endowed=True)
     columns = {table: plain.columns(table) for table in TABLES}
     return {
         table: {*own.names, *plain.arrow(table, np.zeros((0, own.width), np.uint32)).schema.names}

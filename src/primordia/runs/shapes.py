@@ -7,6 +7,7 @@ from math import prod
 import numpy as np
 
 from primordia.config import Config
+from primordia.law.act import Acts
 from primordia.law.seasons import ratchets
 from primordia.law.world import BirthCause, Cause
 from primordia.runs.arrays import NEVER, Arrays, read_count
@@ -115,9 +116,11 @@ def _kinds(
         worlds: number of worlds.
         looks: number of ratchets.
     """
+    acts = Acts._fields if schema.endowed else ()
     tails = {f"tail.{each}": schema.columns(each).width for each in TABLES}
     return {
         **dict(_of_worlds(schema, worlds, looks)),
+        **{n: k for each in acts for n, k in _count(f"world.worlds.acts.{each}", worlds)},
         **dict(_of_organisms(schema, blocks, worlds * schema.cells)),
         **dict(_of_moments(moments, worlds * schema.cells)),
         **{name: ("uint32", (None, width)) for name, width in tails.items()},

@@ -2,15 +2,24 @@
 
 from collections.abc import Iterable
 from types import NoneType, UnionType
-from typing import Any, Literal, Union, get_args, get_origin
+from typing import Annotated, Any, Literal, TypeAlias, TypeVar, Union, get_args, get_origin
 
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel, Discriminator, Tag, ValidationError
 
 from primordia.errors import InputError
 from primordia.printable import printable
 from primordia.settings.base import SEASONAL, Settings
 from primordia.settings.tables import did_you_mean
 from primordia.settings.values import shown
+
+_TAGS = "a number", "no number"
+_T = TypeVar("_T")
+NUMBER: TypeAlias = Annotated[_T, Tag(_TAGS[0])]
+OTHER: TypeAlias = Annotated[_T, Tag(_TAGS[1])]
+number_or_table = Discriminator(lambda value: _TAGS[isinstance(value, dict | Settings)])
+number_or_word = Discriminator(lambda value: _TAGS[isinstance(value, str)])
+"""With one of these, a setting has one type or another, and a message about a wrong value names only one:
+`Annotated[NUMBER[float] | OTHER[Literal["chosen"]], number_or_word]`."""
 
 
 def setting_fields(model: type, prefix: str = "") -> dict[str, Any]:
@@ -20,19 +29,22 @@ def setting_fields(model: type, prefix: str = "") -> dict[str, Any]:
         return fields
     for name, field in model.model_fields.items():
         inner = _model_in(field.annotation)
+        if inner is None or number_or_table in field.metadata:
+            fields[prefix + name] = field
         if inner is not None:
             fields |= setting_fields(inner, f"{prefix}{name}.")
-        else:
-            fields[prefix + name] = field
     return fields
 
 
 def rates_of(group: Settings, prefix: str = "") -> dict[str, float]:
     """Return the values of a group's `Rate` settings, by name; `prefix` is put before each name."""
-    fields = type(group).model_fields.items()
-    return {
-        prefix + name: getattr(group, name) for name, field in fields if SEASONAL in field.metadata
-    }
+    rates: dict[str, float] = {}
+    for name, field in type(group).model_fields.items():
+        if SEASONAL in field.metadata:
+            value = getattr(group, name)
+            inner = isinstance(value, Settings)
+            rates |= rates_of(value, f"{prefix}{name}.") if inner else {prefix + name: value}
+    return rates
 
 
 def choices(annotation: Any) -> tuple[Any, ...]:
@@ -49,7 +61,8 @@ def _model_in(annotation: Any) -> type[BaseModel] | None:
     options = (
         get_args(annotation) if get_origin(annotation) in (Union, UnionType) else (annotation,)
     )
-    models = [o for o in options if isinstance(o, type) and issubclass(o, BaseModel)]
+    bare = [get_args(o)[0] if get_origin(o) is Annotated else o for o in options]
+    models = [o for o in bare if isinstance(o, type) and issubclass(o, BaseModel)]
     return models[0] if models else None
 
 
@@ -71,7 +84,8 @@ def first_fault(
     """
     faults, prefix = error.errors(include_url=False), f"{group}." if group else ""
     fault = faults[0]
-    path = (prefix + ".".join(str(part) for part in fault["loc"])).removesuffix(".")
+    parts = (str(part) for part in fault["loc"] if part not in _TAGS)
+    path = (prefix + ".".join(parts)).removesuffix(".")
     more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
     if fault["type"] == "extra_forbidden":
         own = (name for name in setting_fields(model, prefix) if not name.startswith("fork."))

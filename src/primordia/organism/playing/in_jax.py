@@ -134,7 +134,8 @@ def _advance(
             if frozen is not None and first is not None:
                 seen = jnp.where(frozen.senses, first, senses)
                 kept = jnp.where(frozen.memory, 0, memory)
-            memory, action, faulty = think(law, mind, kept, seen, tick)
+            thought = think(law, mind, kept, seen, vitals.energy, tick)
+            memory, action, faulty = thought.memory, thought.action, thought.faulty
         bodies, outcome = habitat.step(bodies, action)
         vitals, cause = judge(law, vitals, faulty, bodies, outcome, rates)
         playing = alive & counts

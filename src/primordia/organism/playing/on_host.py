@@ -38,8 +38,8 @@ def stretches(
             if manner.script is None:
                 seen = senses if frozen is None else np.where(frozen.senses, first, senses)
                 kept = memory if frozen is None else np.where(frozen.memory, 0, memory)
-                memory, chosen, faulty = think_tick(mind, kept, seen, wide([tick]))
-                action = np.asarray(chosen)
+                thought = think_tick(mind, kept, seen, vitals.energy, wide([tick]))
+                memory, faulty, action = thought.memory, thought.faulty, np.asarray(thought.action)
             else:
                 action = manner.script(tick)
             playing, marked = alive, mark(np.ascontiguousarray(senses, np.float32))

@@ -9,10 +9,9 @@ from primordia.compiled import shared
 from primordia.engine.state import named_leaves
 from primordia.habitats.contract import Bodies, JaxHabitat
 from primordia.law.law import Law
-from primordia.law.life import judge
 from primordia.law.metabolism import Rates
 from primordia.organism.mind import Mind, think
-from primordia.organism.reliving.instant import Instant, Stretch
+from primordia.organism.reliving.instant import Instant, Stretch, judged
 from primordia.random.wide import Wide, wide
 
 
@@ -37,11 +36,12 @@ class LifeInJax:
         return jax.tree.unflatten(jax.tree.structure(like), leaves)
 
     def live(
-        self, now: Instant, ticks: np.ndarray, rates: Rates, count: int
+        self, now: Instant, ticks: np.ndarray, rates: Rates, given: np.ndarray, count: int
     ) -> tuple[Instant, Stretch]:
-        """Live the first ticks, `count` in number, with their rates (TICKS,); ignore the other ticks."""
+        """Live the first ticks, `count` in number, with their rates and endowments, int32 (TICKS,) (see
+        `judged`); ignore the other ticks."""
         real = np.arange(len(ticks)) < count
-        now, lived = self._lived(self._mind, now, (wide(ticks), rates, real))
+        now, lived = self._lived(self._mind, now, (wide(ticks), rates, given, real))
         columns = jax.tree.map(lambda each: np.asarray(each)[:count, 0], lived)
         return now, Stretch._make([ticks[:count], *columns, np.zeros((count, 0), np.int32)])
 
@@ -54,22 +54,22 @@ class LifeInJax:
 
 
 def _lived(
-    law: Law, habitat: JaxHabitat, mind: Mind, now: Instant, ticks: tuple[Wide, Rates, Array]
+    law: Law, habitat: JaxHabitat, mind: Mind, now: Instant, ticks: tuple[Wide, Rates, Array, Array]
 ) -> tuple[Instant, tuple]:
     """Live ticks (n,). Return the state after them, and the columns of a Stretch, each (n, 1, ...).
 
-    `ticks` holds the ticks' numbers, their rates, and whether each tick is real; padding leaves the
-    state unchanged.
+    `ticks` holds the ticks' numbers, their rates, the endowments of children, and whether each tick is
+    real; padding leaves the state unchanged.
     """
 
-    def step(now: Instant, given: tuple[Wide, Rates, Array]) -> tuple[Instant, tuple]:
-        tick, rates, real = given
+    def step(now: Instant, each: tuple[Wide, Rates, Array, Array]) -> tuple[Instant, tuple]:
+        tick, rates, given, real = each
         senses = habitat.sense(now.bodies)
-        thought = think(law, mind, now.memory, senses, tick.map(jnp.atleast_1d))
+        energy, tick = now.vitals.energy, tick.map(jnp.atleast_1d)
+        thought = think(law, mind, now.memory, senses, energy, tick)
         bodies, outcome = habitat.step(now.bodies, thought.action)
-        vitals, cause = judge(law, now.vitals, thought.faulty, bodies, outcome, rates)
-        columns = senses, thought.action, bodies, *vitals, cause
-        after = Instant(thought.memory, vitals, bodies)
+        after, cause = judged(law, now, thought, bodies, outcome, rates, given)
+        columns = senses, thought.action, bodies, *after.vitals, cause
         return jax.tree.map(lambda new, old: jnp.where(real, new, old), after, now), columns
 
     return lax.scan(step, now, ticks)

@@ -6,8 +6,10 @@ import jax
 import numpy as np
 from jax import Array
 
-from primordia.habitats.contract import Bodies
-from primordia.law.life import Vitals
+from primordia.habitats.contract import Bodies, Outcome
+from primordia.law.law import Law
+from primordia.law.life import Thought, Vitals, judge, try_to_copy
+from primordia.law.metabolism import Rates
 
 
 class Instant(NamedTuple):
@@ -18,6 +20,28 @@ class Instant(NamedTuple):
     bodies: Bodies
     """the body; or the senses, if the habitat is on the host, since such a habitat holds the body
     itself"""
+
+
+def judged(
+    law: Law,
+    now: Instant,
+    thought: Thought,
+    bodies: Bodies,
+    outcome: Outcome,
+    rates: Rates,
+    given: Array,
+) -> tuple[Instant, Array]:
+    """Judge a tick of one life; see `life.judge`. Return the state after it, and the cause of death.
+
+    If replication is an act, the organism also pays the price of its try, and `given`, int32 (1,): the
+    endowment of the child born to it in the tick. It is the recorded one, since births depend on the
+    neighbours.
+    """
+    vitals, cause = judge(law, now.vitals, thought.faulty, bodies, outcome, rates)
+    if thought.copying is not None:
+        vitals, _ = try_to_copy(law, vitals, cause, thought.copying, rates)
+        vitals = vitals._replace(energy=vitals.energy - given)
+    return Instant(thought.memory, vitals, bodies), cause
 
 
 class Stretch(NamedTuple):
@@ -32,7 +56,7 @@ class Stretch(NamedTuple):
     bodies: Bodies
     """bodies after the tick; for a habitat on the host, the result of `seen`, or None"""
     energy: np.ndarray
-    """int32, energy after the tick, fixed point; it has no meaning without a metabolism"""
+    """int32, energy after the tick and its birth, fixed point; it has no meaning without a metabolism"""
     eaten: np.ndarray
     """int32, fixed point: food since birth"""
     cause: np.ndarray

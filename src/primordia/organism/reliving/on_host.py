@@ -7,10 +7,9 @@ from jax import Array
 from primordia.compiled import shared
 from primordia.habitats.contract import HostHabitat
 from primordia.law.law import Law
-from primordia.law.life import judge
 from primordia.law.metabolism import Rates
 from primordia.organism.mind import Mind, think
-from primordia.organism.reliving.instant import Instant, Stretch
+from primordia.organism.reliving.instant import Instant, Stretch, judged
 from primordia.random.wide import wide
 
 ONLY = np.array([0])
@@ -26,7 +25,7 @@ class LifeOnHost:
     def __init__(self, law: Law, mind: Mind, habitat: HostHabitat, watched: bool) -> None:
         habitat.open(1, watched)
         self._mind, self._habitat = mind, habitat
-        self._think, self._judge = shared(think, law), shared(judge, law)
+        self._think, self._judged = shared(think, law), shared(judged, law)
 
     def embody(self, words: Array) -> np.ndarray:
         """Make a fresh body from random words uint32 (1, words). Return senses (1, S)."""
@@ -40,22 +39,23 @@ class LifeOnHost:
         return senses
 
     def live(
-        self, now: Instant, ticks: np.ndarray, rates: Rates, count: int
+        self, now: Instant, ticks: np.ndarray, rates: Rates, given: np.ndarray, count: int
     ) -> tuple[Instant, Stretch]:
-        """Live the first ticks, `count` in number, with their rates (TICKS,)."""
+        """Live the first ticks, `count` in number, with their rates and endowments, int32 (TICKS,); see
+        `judged`."""
         # NumPy arrays, since slicing a JAX array takes longer than a frame
         tick, rates = jax.tree.map(np.asarray, (wide(ticks), rates))
         lived = []
         for i in range(count):
             this = np.s_[i : i + 1]
-            thought = self._think(self._mind, now.memory, now.bodies, tick.take(this))
+            energy = now.vitals.energy
+            thought = self._think(self._mind, now.memory, now.bodies, energy, tick.take(this))
             before, action = np.array(now.bodies), np.asarray(thought.action)
             senses, outcome = self._habitat.step(action, np.ones(1, bool))
-            own = Rates(*(each[this] for each in rates))
-            vitals, cause = self._judge(now.vitals, thought.faulty, senses, outcome, own)
-            now = Instant(thought.memory, vitals, senses)
+            own = Rates._make(None if each is None else each[this] for each in rates)
+            now, cause = self._judged(now, thought, senses, outcome, own, given[this])
             seen, counts = self._habitat.seen(), self._counts()
-            columns = before, action, seen, *vitals, cause, counts
+            columns = before, action, seen, *now.vitals, cause, counts
             # The habitat may overwrite its arrays in the next tick.
             lived.append(jax.tree.map(lambda leaf: np.array(leaf)[0], columns))
         columns = jax.tree.map(lambda *each: np.stack(each), *lived)

@@ -148,7 +148,8 @@ class RelivedLife:
                 ticks = first + 1 + np.arange(alone.TICKS)
                 climate = self._climate(ticks)
                 count = min(alone.TICKS, self.ends - first)
-                instant, stretch = alone.live(instant, ticks, Rates.of(climate), count)
+                given = self._given(ticks)
+                instant, stretch = alone.live(instant, ticks, Rates.of(climate), given, count)
                 stretch = self._with_accidents(stretch, ticks, climate)
                 died = np.flatnonzero(stretch.cause >= 0)[:1]
                 yield _as_stored(alone, instant), stretch.take(np.s_[: (*(died + 1), count)[0]])
@@ -179,8 +180,11 @@ class RelivedLife:
         key = stream(self._seed, Purpose.BODY, wide(self.record.born))
         words = body_words(key, jnp.asarray(self.record.cell), self.habitat.words)
         memory = jnp.zeros((1, self.law.memory), jnp.float32)
-        store = self._climate(np.array([self.begins]))["metabolism.store"]
-        vitals = Vitals(to_fixed_point(store), jnp.zeros(1, jnp.int32))
+        if self.law.act is None:
+            store = to_fixed_point(self._climate(np.array([self.begins]))["metabolism.store"])
+        else:
+            store = jnp.asarray(self.run.endowments_of(self.record))
+        vitals = Vitals(store, jnp.zeros(1, jnp.int32))
         return Instant(memory, vitals, alone.embody(words))
 
     def _restored(self, alone: LifeInJax | LifeOnHost, arrays: Mapping[str, np.ndarray]) -> Instant:
@@ -221,6 +225,24 @@ class RelivedLife:
         columns = ("world", "id", "tick", "cause", "energy", "food", *self.run.schema.tallies)
         deaths = self.run.segments("deaths", columns)
         return next(row for segment in deaths for row in segment.filter(own).to_pylist())
+
+    def _given(self, ticks: np.ndarray) -> np.ndarray:
+        """Return the endowment of the child born in each tick: int32 (n,), fixed point, 0 without one."""
+        born, endowments = self._children
+        given = np.zeros(len(ticks), np.int32)
+        here = np.isin(born, ticks)
+        given[born[here] - ticks[0]] = endowments[here]
+        return given
+
+    @cached_property
+    def _children(self) -> tuple[np.ndarray, np.ndarray]:
+        """The ticks at which the organism's children were born, and their endowments, (n,) each."""
+        lives = self.run.lives
+        own = (lives.world == self.world) & (lives.parent == self.record.id[0])
+        if self.law.act is None or not own.any():
+            return np.zeros(0, np.int64), np.zeros(0, np.int32)
+        children = lives.take(np.flatnonzero(own))
+        return children.born, self.run.endowments_of(children)
 
     @property
     def _seed(self) -> Wide:

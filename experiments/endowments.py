@@ -1,0 +1,141 @@
+"""What do parents give to their children, beside what theory says?
+
+    python experiments/endowments.py founders experiments/investment/theory.toml
+    python experiments/endowments.py experiments/investment/theory.toml
+
+The first command writes the founders' genomes. The second one needs the experiment to have been run
+(`primordia experiment`). Theory: a parent that has energy to give leaves most grown children if it gives
+each of them the e with the largest f(e) / (e + price), where f(e) is the share of children that grow up
+(Smith & Fretwell 1974, American Naturalist 108, for a price of 0). The neutral shadow of an organism has
+its pedigree, and as many mutations, but no selection; both are asked at which energy they would copy
+themselves first, and what they would give. The table goes to `results/` beside the file.
+"""
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import jax.numpy as jnp
+import named
+import numpy as np
+from games import write_rows
+from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
+
+import primordia
+from primordia import config
+from primordia.brains import genomes
+from primordia.comparison.tables import spread_text
+from primordia.experiments.results import table
+from primordia.history import pedigree
+from primordia.law.metabolism import ONE
+from primordia.runs.records import Records
+
+LATE, ORGANISMS = 0.75, 200
+FOUNDERS = {"generous": (50.0, 0.95), "stingy": (11.0, 0.9)}
+"""Energy above which a founder copies itself, and the share of it that its child is given."""
+ENERGIES = np.arange(1, 400) / 2
+Floats = NDArray[np.float64]
+
+
+def write_founders(file: Path) -> None:
+    """Write a genome for each of FOUNDERS beside the experiment's file."""
+    values = config.values_of(str(file))
+    own = {name: value for name, value in values.items() if name not in ("question", "arms")}
+    settings = config.validated(own, str(file))
+    layout, store = settings.build_layout(settings.build_habitat()), settings.metabolism.store
+    for name, (energy, share) in FOUNDERS.items():
+        weights = np.zeros((1, 4, 2), np.float32)
+        weights[0, 2] = -energy / store, 1
+        weights[0, 3, 0] = np.log(share / (1 - share))
+        shape = layout.blocks[0][1]
+        genome = weights if shape == (4, 2) else weights.transpose(0, 2, 1)
+        path = file.parent / f"{name}.safetensors"
+        genomes.write(path, layout, genome.reshape(1, -1), {"copies above": str(energy)})
+
+
+def report(file: Path) -> None:
+    """Compare the endowments of late births in all arms with theory, and write the table."""
+    rows: list[dict[str, Any]] = []
+    for folder in named.arms(file):
+        rows += [{"arm": folder.name, **row} for row in worlds_of(primordia.load(folder).opened())]
+        print(f"{folder.name} is done", flush=True)
+    write_rows(file.parent / "results" / f"{file.stem}-endowments", rows, summary(rows))
+
+
+def optimum(run: Records) -> float:
+    """Return the endowment at which f(e) / (e + price) is largest."""
+    world, price = run.config.habitat, run.config.act.price
+
+    def gain(e: float) -> float:
+        odds = (e / world["scale"]) ** world["shape"]
+        grown = 1 - np.exp(-odds) if world["survival"] == "weibull" else odds / (1 + odds)
+        return -grown / (e + price)
+
+    return float(minimize_scalar(gain, (world["scale"], 2 * world["scale"])).x)
+
+
+def worlds_of(run: Records) -> list[dict[str, Any]]:
+    """Return a row for each world."""
+    lives, best = run.lives, optimum(run)
+    given, late = run.endowments_of(lives) / ONE, lives.late(LATE) & (lives.parent >= 0)
+    rows = []
+    for world in range(run.config.seeds):
+        own = np.flatnonzero(late & (lives.world == world))
+        some = own[:: max(1, len(own) // ORGANISMS)][:ORGANISMS]
+        would, shadows = (first_gift(run, some, redrawn) for redrawn in (False, True))
+        rows.append(
+            {
+                "seed": int(run.world_seeds[world]),
+                "theory": round(best, 2),
+                "first births": round(
+                    float(given[lives.world == world][: 2 * 1024][1024:].mean()), 2
+                ),
+                "late births": round(float(given[own].mean()), 2),
+                "late / theory": round(float(given[own].mean()) / best, 3),
+                "would give": round(float(np.nanmedian(would)), 2),
+                "shadow would give": round(float(np.nanmedian(shadows)), 2),
+                "shadow: 10 %": round(float(np.nanquantile(shadows, 0.1)), 2),
+                "shadow: 90 %": round(float(np.nanquantile(shadows, 0.9)), 2),
+                "shadows that never copy": round(float(np.isnan(shadows).mean()), 3),
+            }
+        )
+    return rows
+
+
+def first_gift(run: Records, rows: np.ndarray, redrawn: bool) -> Floats:
+    """Return what each organism gives at the least energy at which it copies itself; NaN if at none."""
+    made, act = pedigree.genomes(run, rows, redrawn), run.config.act
+    store, found = run.config.metabolism.store, np.full(len(rows), np.nan)
+    for energy in ENERGIES[::-1]:
+        senses = jnp.tile(jnp.array([1, energy / store], jnp.float32), (len(rows), 1))
+        blocks = run.layout.split(jnp.asarray(made))
+        outputs = run.law.brain(blocks, senses[:, :0], senses)[1][:, 2:]
+        whole = jnp.full(len(rows), round(energy * ONE), jnp.int32)
+        tries = act.tries(outputs, whole, jnp.float32(act.price))
+        found = np.where(tries.tried, np.asarray(tries.endowment) / ONE, found)
+    return found
+
+
+def summary(rows: list[dict[str, Any]]) -> str:
+    """Return a table of medians and quartiles over worlds."""
+    lines, columns = [], list(rows[0])[2:]
+    for arm in dict.fromkeys(row["arm"] for row in rows):
+        worlds = [row for row in rows if row["arm"] == arm]
+        lines.append(
+            [arm, len(worlds), *(spread_text([row[name] for row in worlds]) for name in columns)]
+        )
+    note = (
+        "Medians over worlds (quartiles), in units of energy. Late births: the last quarter of a world's"
+        " births. `would give`: what an organism gives at the least energy at which it copies itself,"
+        f" median of {ORGANISMS} late-born; its shadow has the same pedigree without selection."
+    )
+    return f"{table(['arm', 'worlds', *columns], lines)}\n\n{note}"
+
+
+if __name__ == "__main__":
+    if sys.argv[1:2] == ["founders"]:
+        del sys.argv[1]
+        named.for_each_named(write_founders, __doc__)
+    else:
+        named.for_each_named(report, __doc__)

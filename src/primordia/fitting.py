@@ -1,0 +1,71 @@
+"""Whether settings that are each valid fit together; `config.checked` asks, with a Config."""
+
+from typing import Any
+
+from primordia.brains.checks import check_brain
+from primordia.errors import InputError
+from primordia.habitats.checks import check_arrays
+from primordia.habitats.contract import AnyHabitat, Continuous, JaxHabitat
+from primordia.law.law import Law
+from primordia.mutations.checks import check_mutation
+from primordia.own_code import LIBRARIES
+from primordia.settings.fields import rates_of
+from primordia.settings.tables import PARTS, did_you_mean
+
+
+def check(config: Any) -> None:
+    """Check a Config as a whole.
+
+    Raises:
+        InputError, ValueError: settings do not fit together, or a part is wrong.
+    """
+    habitat = config.build_habitat()
+    if (cells := config.cells * config.seeds) > 2**26:
+        says = f"{cells} cells are more than 2^26; spread them over several runs"
+        raise InputError(f"cells x seeds: {says}")
+    _check_own_code(config, habitat)
+    if config.act is not None and config.metabolism is None:
+        raise InputError("replication.kind: an act costs energy, so it needs a metabolism; add one")
+    if config.brain.get("interoception") and config.metabolism is None:
+        raise InputError("brain.interoception: without a metabolism there is no energy to perceive")
+    continuous = any(isinstance(part, Continuous) for part in habitat.action.parts)
+    if config.motor.kind == "gaussian" and not continuous:
+        raise InputError(
+            "motor.kind: this habitat's actions are discrete, so a gaussian motor cannot be used;"
+            " set motor.kind to direct"
+        )
+    law = config.build_law(habitat)
+    try:
+        law.heredity.mutation.check(law.heredity.layout)
+    except ValueError as error:
+        raise InputError(f"mutation.{error}") from None
+    for season in config.seasons:
+        _check_season(season.setting, config, law)
+
+
+def _check_own_code(config: Any, habitat: AnyHabitat) -> None:
+    """Trace the parts of the user's own. To trace an environment of a library can take seconds."""
+    modules = {part: {each.partition(":")[0] for each in config.code_of(part)} for part in PARTS}
+    own = {part for part in PARTS if modules[part] - {*LIBRARIES}}
+    if "habitat" in own and isinstance(habitat, JaxHabitat):
+        check_arrays(habitat)
+    if "brain" in own:
+        check_brain(config.build_brain(habitat), *config.sizes(habitat))
+    if "mutation" in own:
+        heredity = config.build_heredity(config.build_layout(habitat))
+        check_mutation(heredity.mutation, heredity.layout)
+
+
+def _check_season(setting: str, config: Any, law: Law) -> None:
+    if not law.governed(setting):
+        known = sorted(
+            {*law.rates, *(f"mutation.{name}" for name in rates_of(law.heredity.mutation))}
+        )
+        raise InputError(
+            f"seasons: {setting} is not a setting that seasons can change in this task"
+            f"{did_you_mean(setting, known)}"
+        )
+    if setting.startswith("metabolism.") and config.metabolism is None:
+        raise InputError(
+            f"seasons: {setting} needs a metabolism; remove the season or add a metabolism"
+        )
