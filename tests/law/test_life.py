@@ -115,8 +115,7 @@ def thought(motor: Motor, outputs: np.ndarray, action: Action = NUMBERS) -> Thou
     law = replace(meadow_law(), brain=brain, motor=motor, action=action)
     memory, senses = np.ones((2, len(outputs), 3), np.float32)
     think = jax.jit(lambda *given: life.think(law, {}, *given))
-    energy = np.zeros(len(outputs), np.int32)
-    return think(memory, senses, energy, key_of(len(outputs)), np.arange(len(outputs)))
+    return think(memory, senses, key_of(len(outputs)), np.arange(len(outputs)))
 
 
 def key_of(count: int) -> Wide:

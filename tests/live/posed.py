@@ -47,7 +47,11 @@ def law(cells: int, worlds: int = 1, topology: str = "ring", saturation_ticks: i
     """Return what the view asks of a law."""
     placement = Placement.model_validate({"topology": topology})
     return SimpleNamespace(
-        cells=cells, worlds=worlds, placement=placement, saturation_ticks=saturation_ticks
+        cells=cells,
+        worlds=worlds,
+        placement=placement,
+        saturation_ticks=saturation_ticks,
+        perceived=lambda senses, energy: senses,
     )
 
 

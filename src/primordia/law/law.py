@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import Any, Literal
 
 import jax.numpy as jnp
 import numpy as np
@@ -79,7 +79,7 @@ class Law:
             return [f"mutation.{name}" for name in names]
         return [setting] if setting in self.rates else []
 
-    def perceived(self, senses: Array, energy: Array) -> Array:
+    def perceived(self, senses: Any, energy: Any) -> Any:
         """Return what N organisms perceive, float32 (N, S): the habitat's senses (N, S'), followed by
         their energy, int32 (N,), as a share of the store at birth, if they have interoception."""
         if not self.interoception:

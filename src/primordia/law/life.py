@@ -47,13 +47,7 @@ class Vitals(NamedTuple):
 
 
 def think(
-    law: Law,
-    genome: Genome,
-    memory: Array,
-    senses: Array,
-    energy: Array,
-    key: Wide,
-    cell: Array,
+    law: Law, genome: Genome, memory: Array, senses: Array, key: Wide, cell: Array
 ) -> Thought:
     """Advance brains and motors by one tick.
 
@@ -61,12 +55,11 @@ def think(
         law: the law.
         genome: blocks of weights, float32 (N, *shape) each.
         memory: float32 (N, M).
-        senses: senses from the habitat, float32 (N, S'); see `Law.perceived`.
-        energy: int32 (N,), fixed point.
+        senses: what organisms perceive, float32 (N, S), as from `Law.perceived`.
         key: key of each organism's motor in this tick, (N,).
         cell: each organism's cell within its world, int32 (N,).
     """
-    memory, output = law.brain(genome, memory, law.perceived(senses, energy))
+    memory, output = law.brain(genome, memory, senses)
     faulty = (~jnp.isfinite(output)).any(axis=1)
     copying = None
     if law.act is not None:

@@ -51,10 +51,10 @@ def keys_of(worlds: Worlds, ticks: Array) -> Streams:
 
 
 def think(law: Law, world: World, senses: Array, keys: Streams) -> Thought:
-    """Advance the brains and motors of all cells by one tick, with senses float32 (C, S)."""
+    """Advance the brains and motors of all cells by one tick, with the habitat's senses."""
     organisms, key = world.organisms, keys[Purpose.MOTOR].map(law.per_cell)
-    genome, memory, energy = organisms.genome, organisms.memory, organisms.energy
-    return life.think(law, genome, memory, senses, energy, key, law.cell_numbers)
+    senses = law.perceived(senses, organisms.energy)
+    return life.think(law, organisms.genome, organisms.memory, senses, key, law.cell_numbers)
 
 
 def judge(

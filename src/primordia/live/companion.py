@@ -137,8 +137,8 @@ def _perceived(engine: Engine, cell: int, world: int) -> tuple[np.ndarray, np.nd
         senses, seen = bodies, own(habitat.seen())
     seed, tick = (to_host(each)[world : world + 1] for each in (worlds.seed, worlds.tick))
     mind = Mind(own(organisms.genome), wide(seed), jnp.array([cell % law.cells], jnp.int32))
-    memory, energy = own(organisms.memory), own(organisms.energy)
-    thought = shared(think, law)(mind, memory, senses, energy, wide(tick + np.uint64(1)))
+    memory, perceived = own(organisms.memory), law.perceived(senses, own(organisms.energy))
+    thought = shared(think, law)(mind, memory, perceived, wide(tick + np.uint64(1)))
     alone = jax.tree.map(lambda leaf: np.asarray(leaf)[0], (senses, memory, seen, thought.action))
     return alone[0], alone[1], Body(alone[2], alone[3])
 

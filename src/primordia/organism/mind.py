@@ -22,8 +22,7 @@ class Mind(NamedTuple):
     """int32 (N,), within the world"""
 
 
-def think(law: Law, mind: Mind, memory: Array, senses: Array, energy: Array, tick: Wide) -> Thought:
-    """Return thoughts from memory (N, M), senses of the habitat (N, S') and energy, int32 (N,), at one
-    `tick`, a Wide (1,)."""
+def think(law: Law, mind: Mind, memory: Array, senses: Array, tick: Wide) -> Thought:
+    """Return thoughts from memory (N, M) and perceived senses (N, S) at one `tick`, a Wide (1,)."""
     key = stream(mind.key, Purpose.MOTOR, tick)
-    return life.think(law, mind.genome, memory, senses, energy, key, mind.cell)
+    return life.think(law, mind.genome, memory, senses, key, mind.cell)

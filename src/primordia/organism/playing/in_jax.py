@@ -82,7 +82,9 @@ def _opened(
     """Return the table at the start of `count` games; further games are padding."""
     mind, memory, vitals, words = shared(begun, law, habitat.words)(seated)
     bodies = shared(type(habitat).reset, habitat)(words)
-    first = None if frozen is None else shared(type(habitat).sense, habitat)(bodies)
+    first = None
+    if frozen is not None:
+        first = law.perceived(shared(type(habitat).sense, habitat)(bodies), vitals.energy)
     alive = np.arange(len(seated.genomes)) < count
     return _Table(mind, seated.rates, frozen, first, bodies, memory, vitals, jnp.asarray(alive))
 
@@ -128,13 +130,14 @@ def _advance(
         bodies, memory, vitals, alive = own
         tick, counts, action = now
         senses, faulty = habitat.sense(bodies), jnp.zeros_like(alive)
-        met = Thinking(senses, memory) if watched else None
+        perceived = law.perceived(senses, vitals.energy)
+        met = Thinking(perceived, memory) if watched else None
         if action is None:
-            seen, kept = senses, memory
+            seen, kept = perceived, memory
             if frozen is not None and first is not None:
-                seen = jnp.where(frozen.senses, first, senses)
+                seen = jnp.where(frozen.senses, first, perceived)
                 kept = jnp.where(frozen.memory, 0, memory)
-            thought = think(law, mind, kept, seen, vitals.energy, tick)
+            thought = think(law, mind, kept, seen, tick)
             memory, action, faulty = thought.memory, thought.action, thought.faulty
         bodies, outcome = habitat.step(bodies, action)
         vitals, cause = judge(law, vitals, faulty, bodies, outcome, rates)

@@ -28,17 +28,19 @@ def stretches(
     alive, faulty = np.ones(count, bool), jnp.zeros(count, bool)
     habitat.open(count)
     with closing(habitat):
-        senses = first = np.array(habitat.reset(np.arange(count), np.asarray(words)))
+        senses = np.array(habitat.reset(np.arange(count), np.asarray(words)))
+        first = law.perceived(senses, vitals.energy)
         for tick in range(1, manner.ticks + 1):
+            perceived = law.perceived(senses, vitals.energy)
             met = (
-                Thinking(np.array(senses)[None], np.asarray(memory)[None])
+                Thinking(np.array(perceived)[None], np.asarray(memory)[None])
                 if manner.watched
                 else None
             )
             if manner.script is None:
-                seen = senses if frozen is None else np.where(frozen.senses, first, senses)
+                seen = perceived if frozen is None else np.where(frozen.senses, first, perceived)
                 kept = memory if frozen is None else np.where(frozen.memory, 0, memory)
-                thought = think_tick(mind, kept, seen, vitals.energy, wide([tick]))
+                thought = think_tick(mind, kept, seen, wide([tick]))
                 memory, faulty, action = thought.memory, thought.faulty, np.asarray(thought.action)
             else:
                 action = manner.script(tick)

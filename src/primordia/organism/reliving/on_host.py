@@ -24,7 +24,7 @@ class LifeOnHost:
 
     def __init__(self, law: Law, mind: Mind, habitat: HostHabitat, watched: bool) -> None:
         habitat.open(1, watched)
-        self._mind, self._habitat = mind, habitat
+        self._law, self._mind, self._habitat = law, mind, habitat
         self._think, self._judged = shared(think, law), shared(judged, law)
 
     def embody(self, words: Array) -> np.ndarray:
@@ -48,8 +48,8 @@ class LifeOnHost:
         lived = []
         for i in range(count):
             this = np.s_[i : i + 1]
-            energy = now.vitals.energy
-            thought = self._think(self._mind, now.memory, now.bodies, energy, tick.take(this))
+            perceived = self._law.perceived(now.bodies, now.vitals.energy)
+            thought = self._think(self._mind, now.memory, perceived, tick.take(this))
             before, action = np.array(now.bodies), np.asarray(thought.action)
             senses, outcome = self._habitat.step(action, np.ones(1, bool))
             own = Rates._make(None if each is None else each[this] for each in rates)
