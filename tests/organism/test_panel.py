@@ -1,0 +1,100 @@
+"""The panel below the pictures of a life: brains that think again, the past, and marks of changes."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image, ImageColor
+
+from primordia.brains.plastic import Plastic
+from primordia.organism.inside import CHANGED, tints
+from primordia.organism.reliving import panel, replay
+from primordia.organism.reliving.in_jax import LifeInJax
+from primordia.organism.reliving.panel import BLANK, FRAME, HEIGHT, Panels, Past
+from primordia.organism.reliving.relived import RelivedLife
+from primordia.runs.archive import Archive
+
+MARK, EMPTY = (np.array(ImageColor.getrgb(each)) for each in (CHANGED, BLANK))
+PICTURE = Image.new("RGB", (640, 100), (90, 90, 90))
+
+
+def oldest(run: Path, died: bool) -> RelivedLife:
+    """Return the longest of the lives that have ended, or of those that go on."""
+    archive = Archive(run)
+    lives = archive.lives
+    rows = np.flatnonzero(lives.died == died)
+    return RelivedLife.of(archive, int(lives.id[rows[np.argmax(lives.lifespan[rows])]]))
+
+
+def moments(life: RelivedLife, *ages: range) -> Iterator[tuple[int, np.ndarray]]:
+    """Yield ages and pictures with their panels, for parts of a life."""
+    panels = Panels(life, ages, max(map(len, ages)))
+    for part, stretch, i in replay.moments(life, list(ages), 1, panels.follow):
+        age = int(stretch.tick[i] - life.record.born[0])
+        yield age, np.asarray(panels.under(PICTURE, part, stretch, i))
+
+
+def test_a_brain_that_thinks_again_ends_with_the_memory_on_record(
+    learners: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The life is lived in stretches of 24 ticks, and the last one is shorter."""
+    monkeypatch.setattr(LifeInJax, "TICKS", 24)
+    life = oldest(learners, died=False)
+    panels = Panels(life, [range(1, 9)], 8)
+    for stretch in life.stretches():
+        panels.follow(stretch)
+        np.testing.assert_array_equal(np.argmax(panels._output, axis=1), stretch.action)
+    assert life.ends - life.begins > 24
+    memory = life.run.state["world.organisms.memory"][int(life.record.cell[0])]
+    np.testing.assert_array_equal(panels._memory[0], memory)
+    bound = Plastic().bound
+    np.testing.assert_allclose(panels._shown["fast weights"][-1].ravel(), memory[-6:] / bound)
+
+
+def test_a_frame_and_marks_show_the_changes_of_a_world(learners: Path) -> None:
+    """The world changes at the ages 6, 17 and 40, and each change is shown as new for 25 ticks."""
+    life = oldest(learners, died=False)
+    last = life.ends - int(life.record.born[0])
+    assert last > 44
+    for age, seen in moments(life, range(1, 5), range(38, last + 1)):
+        assert seen.shape == (100 + HEIGHT, 640, 3)
+        edge = (seen[:FRAME, :] == MARK).all()
+        assert edge == ((38 <= age < 42 or 40 <= age < 65) and age < last), age
+        assert (seen[FRAME : 100 - FRAME, FRAME:-FRAME] == 90).all()
+        marks = (seen[-12, :520] == MARK).all(axis=1)
+        assert marks.any() == (age >= 40), "a change to come is pale, and the first is not shown"
+
+
+def test_the_past_is_drawn_up_to_the_present_age_and_on_one_scale() -> None:
+    """The part has the ages 11 to 20, on a scale of 20 ticks; two rows of numbers."""
+    past, values = Past(range(11, 21), 20), np.linspace(-1, 1, 40).reshape(20, 2)
+    for first in (1, 8, 15):
+        past.take(first, values[first - 1 : first + 6].astype(np.float32))
+    seen = np.asarray(past.drawn(200, 14))
+    assert seen.shape == (panel.TALL, 200, 3)
+    assert (seen[:, 40:] == EMPTY).all()
+    for age in range(11, 15):
+        for row in range(2):
+            place = seen[row * 48 + 24, (age - 11) * 10 + 5]
+            np.testing.assert_allclose(place, tints(values[age - 1, row]), atol=1)
+
+
+def test_worlds_without_learning_and_changes_keep_their_pictures(poles: Path) -> None:
+    life = oldest(poles, died=True)
+    panels, nothing = Panels(life, [range(1, 5)], 4), None
+    panels.follow(nothing)
+    assert panels.under(PICTURE, 0, nothing, 0) is PICTURE
+    assert panel.colours(life.law, life.habitat) == []
+
+
+def test_a_life_is_filmed_with_its_panel(learners: Path, tmp_path: Path) -> None:
+    """A GIF has the colours of panels, although its first picture is without marks."""
+    life: Any = oldest(learners, died=False)
+    path = replay.replay(life.run, int(life.record.id[0]), out=tmp_path / "a.gif", ages=(4, 8))
+    with Image.open(path) as film:
+        assert film.size == (320, (360 + HEIGHT) // 2)
+        film.seek(2)
+        framed = np.asarray(film.convert("RGB"), int)[:2, :320]
+    assert np.abs(framed - MARK).max() < 24
