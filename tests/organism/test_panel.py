@@ -81,6 +81,17 @@ def test_the_past_is_drawn_up_to_the_present_age_and_on_one_scale() -> None:
             np.testing.assert_allclose(place, tints(values[age - 1, row]), atol=1)
 
 
+def test_a_panel_fits_below_a_narrow_picture(learners: Path) -> None:
+    """The picture is in the middle of the width that a panel needs."""
+    life, small = oldest(learners, died=False), PICTURE.resize((84, 84))
+    panels = Panels(life, [range(1, 3)], 2)
+    for part, stretch, i in replay.moments(life, [range(1, 3)], 1, panels.follow):
+        seen = np.asarray(panels.under(small, part, stretch, i))
+        assert seen.shape == (84 + HEIGHT, panel.NARROWEST, 3)
+        (columns,) = np.nonzero((seen[:84] == 90).all(axis=(0, 2)))
+        assert (columns[0], len(columns)) == ((panel.NARROWEST - 84) // 2, 84)
+
+
 def test_worlds_without_learning_and_changes_keep_their_pictures(poles: Path) -> None:
     life = oldest(poles, died=True)
     panels, nothing = Panels(life, [range(1, 5)], 4), None
