@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from itertools import islice, repeat
+from math import ceil
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -23,7 +24,7 @@ LIVED = [(tick * 30, 45, tick < 40) for tick in range(60)]
 TWO_WORLDS = joined([world_of(LIVED[:9], 900), world_of(LIVED, 1800)], np.array([0, 1]))
 
 
-def without_panels(*given: Any) -> Any:
+def without_panels() -> Any:
     """Return the panels of a life in a world without them: they leave pictures as they are."""
     return SimpleNamespace(follow=lambda stretch: None, under=lambda picture, *moment: picture)
 
@@ -202,15 +203,21 @@ def test_a_life_is_shown_from_its_birth_to_its_end_at_thirty_pictures_a_second(
     ) -> Iterator[tuple[int, Any, int]]:
         return ((0, SimpleNamespace(tick=stretch), age) for age in whole[0][::step])
 
+    def panels(_: Any, parts: Any, length: int) -> Any:
+        lengths.append(length)
+        return without_panels()
+
     monkeypatch.setattr("primordia.film.beside.RelivedLife.of", lambda *_: life)
     monkeypatch.setattr("primordia.organism.reliving.replay.picture_rate", lambda _: rate)
     monkeypatch.setattr("primordia.organism.reliving.replay.moments", moments)
     monkeypatch.setattr("primordia.organism.reliving.replay.picture_of", lambda life, stretch, i: i)
-    monkeypatch.setattr(beside, "Panels", without_panels)
+    lengths: list[int] = []
+    monkeypatch.setattr(beside, "Panels", panels)
     ages = [4 + int(picture * rate / 30) for picture in range(30)]
     ages = [age for age in ages if age <= 10]
-    pictures: list[Any] = list(islice(beside.pictures_of(a_run(world_of(LIVED)), 0, 0, 30), 30))
+    pictures: list[Any] = list(islice(beside.pictures_of(a_run(world_of(LIVED)), 0, 0, 3), 30))
     assert pictures == ages + [10] * (30 - len(ages))
+    assert lengths == [min(ceil(rate / 10), 7)], "a panel has the ages of the three pictures needed"
 
 
 def test_a_film_is_in_the_folder_of_its_run_under_the_number_of_its_world(

@@ -15,7 +15,7 @@ from primordia.live.forms import Room
 from primordia.live.paint import EIGHTHS
 from primordia.live.panel import STRONG
 from primordia.live.words import WORDS
-from primordia.organism.inside import CHANGED, acting, tints
+from primordia.organism.inside import CHANGED, Inside, acting, tints
 from tests.live.drawn import colours, text
 from tests.worlds import config
 
@@ -47,6 +47,28 @@ def test_a_learner_has_its_outputs_fast_weights_and_changes_below_its_picture(
         learning.state, _ = learning.chunks.advance(learning.state, limits, 1)
     assert changes == ["none in the last 25 ticks", "now", "1 tick ago"]
     assert framed == [False, True, True]
+
+
+def test_an_organism_thinks_with_the_genome_of_its_cell(
+    learning: Engine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    given: list[Any] = []
+
+    def shared(*_: Any) -> Any:
+        def look(*values: Any) -> Any:
+            given.extend(values)
+            return None, Inside(np.zeros((1, 2)), {})
+
+        return look
+
+    monkeypatch.setattr(thoughts, "shared", shared)
+    thoughts.rows(learning, 2, np.arange(4.0), np.arange(9.0), None, 60)
+    genome, memory, senses = given
+    blocks = learning.state.world.organisms.genome
+    assert {name: block.tolist() for name, block in genome.items()} == {
+        name: block[2:3].tolist() for name, block in blocks.items()
+    }
+    assert (memory.tolist(), senses.tolist()) == ([[*range(9)]], [[*range(4)]])
 
 
 def test_nothing_is_added_for_other_worlds() -> None:

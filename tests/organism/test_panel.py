@@ -1,15 +1,17 @@
 """The panel below the pictures of a life: brains that think again, the past, and marks of changes."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from PIL import Image, ImageColor
+from PIL import Image, ImageColor, ImageDraw
 
 from primordia.brains.plastic import Plastic
-from primordia.organism.inside import CHANGED, tints
+from primordia.habitats.framed import PAPER
+from primordia.organism.inside import CHANGED, squashed, tints
 from primordia.organism.reliving import panel, replay
 from primordia.organism.reliving.in_jax import LifeInJax
 from primordia.organism.reliving.panel import BLANK, FRAME, HEIGHT, Panels, Past
@@ -28,9 +30,11 @@ def oldest(run: Path, died: bool) -> RelivedLife:
     return RelivedLife.of(archive, int(lives.id[rows[np.argmax(lives.lifespan[rows])]]))
 
 
-def moments(life: RelivedLife, *ages: range) -> Iterator[tuple[int, np.ndarray]]:
+def moments(
+    life: RelivedLife, *ages: range, length: int | None = None
+) -> Iterator[tuple[int, np.ndarray]]:
     """Yield ages and pictures with their panels, for parts of a life."""
-    panels = Panels(life, ages, max(map(len, ages)))
+    panels = Panels(life, ages, length or max(map(len, ages)))
     for part, stretch, i in replay.moments(life, list(ages), 1, panels.follow):
         age = int(stretch.tick[i] - life.record.born[0])
         yield age, np.asarray(panels.under(PICTURE, part, stretch, i))
@@ -65,6 +69,10 @@ def test_a_frame_and_marks_show_the_changes_of_a_world(learners: Path) -> None:
         assert (seen[FRAME : 100 - FRAME, FRAME:-FRAME] == 90).all()
         marks = (seen[-12, :520] == MARK).all(axis=1)
         assert marks.any() == (age >= 40), "a change to come is pale, and the first is not shown"
+    for _, seen in moments(
+        life, range(41, last + 1), length=90
+    ):  # a mark is five pixels wide on each side
+        assert not (seen[-12, :520] == MARK).all(axis=1).any(), "the change was before this part"
 
 
 def test_the_past_is_drawn_up_to_the_present_age_and_on_one_scale() -> None:
@@ -79,6 +87,31 @@ def test_the_past_is_drawn_up_to_the_present_age_and_on_one_scale() -> None:
         for row in range(2):
             place = seen[row * 48 + 24, (age - 11) * 10 + 5]
             np.testing.assert_allclose(place, tints(values[age - 1, row]), atol=1)
+
+
+def test_without_fast_weights_the_past_is_that_of_the_outputs(learners: Path) -> None:
+    """The organism was born late, and its brain does not learn. Outputs are drawn as bars of theirs."""
+    archive = Archive(learners)
+    rows = np.flatnonzero((archive.lives.born > 5) & (archive.lives.lifespan > 5))
+    born = RelivedLife.of(archive, int(archive.lives.id[rows[0]]))
+    life = replace(born, law=replace(born.law, brain=Plastic(hidden=3, bound=0.0)))
+    panels = Panels(life, [range(1, 6)], 5)
+    panels.follow(next(life.stretches()))
+    assert panels._shown == {}
+    np.testing.assert_array_equal(panels._pasts[0]._rows, squashed(panels._output[:5]).T)
+
+
+def test_bars_go_to_the_side_of_their_sign_and_those_that_act_are_dark() -> None:
+    """Two outputs, of 3 and -1, are three quarters and half as long as they could be."""
+    picture = Image.new("RGB", (200, panel.TALL), PAPER)
+    panel._bars(
+        ImageDraw.Draw(picture), (0, 0, 200), np.array([3.0, -1.0]), np.array([True, False])
+    )
+    seen = np.asarray(picture)
+    for row, colour, first, last in ((24, panel.INK, 101, 175), (72, panel.PLAIN, 50, 99)):
+        (columns,) = np.nonzero((seen[row] == ImageColor.getrgb(colour)).all(axis=1))
+        columns = columns[columns != 100]  # the line in the middle
+        assert (columns.min(), columns.max(), len(columns)) == (first, last, last + 1 - first)
 
 
 def test_a_panel_fits_below_a_narrow_picture(learners: Path) -> None:
