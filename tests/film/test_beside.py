@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from itertools import islice, repeat
+from math import ceil
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -23,6 +24,11 @@ LIVED = [(tick * 30, 45, tick < 40) for tick in range(60)]
 TWO_WORLDS = joined([world_of(LIVED[:9], 900), world_of(LIVED, 1800)], np.array([0, 1]))
 
 
+def without_panels() -> Any:
+    """Return the panels of a life in a world without them: they leave pictures as they are."""
+    return SimpleNamespace(follow=lambda stretch: None, under=lambda picture, *moment: picture)
+
+
 def a_run(lives: Lives, lacks: bool = False) -> Any:
     """Return a run of invented lives; the second world has had 1,234 births."""
     return SimpleNamespace(
@@ -30,6 +36,7 @@ def a_run(lives: Lives, lacks: bool = False) -> Any:
         lives=lives,
         path=Path("run"),
         config=config(MEADOW, seeds=lives.worlds, cells=60, saturation_ticks=70),
+        law=None,
         habitat=SimpleNamespace(rate=50.0, lacks=lambda _: ["picture"] if lacks else []),
         count=lambda name: np.array([60, 1234]),
     )
@@ -54,7 +61,8 @@ def film(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Any]:
             found.rate, found.written, found.sample = rate, path, sample
 
         monkeypatch.setattr(films, "Frames", frames)
-        monkeypatch.setattr(films, "with_colours", lambda first: first)
+        monkeypatch.setattr("primordia.organism.reliving.panel.colours", lambda law, habitat: [])
+        monkeypatch.setattr("primordia.organism.video.sample_of", lambda first, *strips: first)
         monkeypatch.setattr("primordia.organism.video.write", write)
         found.path = films.film(run, **{"out": tmp_path / "film.mp4", **options})
         return found
@@ -146,9 +154,11 @@ def test_the_oldest_so_far_begins_its_life_when_it_is_first_shown(
 ) -> None:
     """Organism 0 lives 10 ticks. Organism 2 grows older, and is shown after the first four seconds."""
 
-    def pictures_of(run: Any, organism: int, world: int) -> Iterator[Any]:
+    def pictures_of(run: Any, organism: int, world: int, count: int) -> Iterator[Any]:
+        counts.append(count)
         return ((organism, world, number) for number in range(1000))
 
+    counts: list[int] = []
     monkeypatch.setattr(beside, "pictures_of", pictures_of)
     parts = [world_of([(0, 9, True), (1, 3, True), (5, 95, False)], 1000)] * 2
     lives = joined(parts, np.array([0, 1])).of_world(1)
@@ -156,6 +166,7 @@ def test_the_oldest_so_far_begins_its_life_when_it_is_first_shown(
     shown = list(beside.oldest(a_run(lives), lives, ticks))
     assert shown[:120] == [Beside((0, 1, at), "the oldest so far: organism 0") for at in range(120)]
     assert shown[120:] == [Beside((2, 1, at), "the oldest so far: organism 2") for at in range(80)]
+    assert counts == [120, 80], "the pictures that are needed of each"
     late = lives.take(np.array([2]))
     assert (
         next(beside.oldest(a_run(late), late, ticks[9:])).about == "the oldest so far: organism 2"
@@ -172,7 +183,7 @@ def test_a_life_without_a_tick_has_no_picture(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setattr("primordia.film.beside.RelivedLife.of", lambda *_: life)
     monkeypatch.setattr("primordia.organism.reliving.replay.picture_rate", lambda _: 30.0)
     with pytest.raises(InputError, match=r"^organism 7 has not lived a tick yet"):
-        next(beside.pictures_of(a_run(world_of(LIVED)), 7, 0))
+        next(beside.pictures_of(a_run(world_of(LIVED)), 7, 0, 1))
 
 
 @pytest.mark.parametrize("rate", [50.0, 15.0, 30.0, 12.0, 20.0, 90.0, 75.0])
@@ -187,17 +198,26 @@ def test_a_life_is_shown_from_its_birth_to_its_end_at_thirty_pictures_a_second(
     record = SimpleNamespace(born=np.array([100]))
     life, stretch = SimpleNamespace(record=record, begins=103, ends=110), np.arange(100, 120)
 
-    def moments(_: Any, whole: list[range], step: int) -> Iterator[tuple[int, Any, int]]:
+    def moments(
+        _: Any, whole: list[range], step: int, *more: Any
+    ) -> Iterator[tuple[int, Any, int]]:
         return ((0, SimpleNamespace(tick=stretch), age) for age in whole[0][::step])
+
+    def panels(_: Any, parts: Any, length: int) -> Any:
+        lengths.append(length)
+        return without_panels()
 
     monkeypatch.setattr("primordia.film.beside.RelivedLife.of", lambda *_: life)
     monkeypatch.setattr("primordia.organism.reliving.replay.picture_rate", lambda _: rate)
     monkeypatch.setattr("primordia.organism.reliving.replay.moments", moments)
     monkeypatch.setattr("primordia.organism.reliving.replay.picture_of", lambda life, stretch, i: i)
+    lengths: list[int] = []
+    monkeypatch.setattr(beside, "Panels", panels)
     ages = [4 + int(picture * rate / 30) for picture in range(30)]
     ages = [age for age in ages if age <= 10]
-    pictures: list[Any] = list(islice(beside.pictures_of(a_run(world_of(LIVED)), 0, 0), 30))
+    pictures: list[Any] = list(islice(beside.pictures_of(a_run(world_of(LIVED)), 0, 0, 3), 30))
     assert pictures == ages + [10] * (30 - len(ages))
+    assert lengths == [min(ceil(rate / 10), 7)], "a panel has the ages of the three pictures needed"
 
 
 def test_a_film_is_in_the_folder_of_its_run_under_the_number_of_its_world(

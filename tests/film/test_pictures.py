@@ -9,10 +9,11 @@ from primordia.figures import spacetime
 from primordia.film import colours as colouring
 from primordia.film import shape as shapes
 from primordia.film.colours import FADING, FLASH, GROUND, PALETTE, colours
-from primordia.film.frame import HEIGHT, STRIPS, WIDTH, Frames, with_colours
+from primordia.film.frame import HEIGHT, STRIPS, WIDTH, Frames, cell_colours
 from primordia.film.moments import RATE, SECONDS, moments
 from primordia.film.shape import PAPER, SIDE, Ring, shape
 from primordia.law.placement import Placement
+from primordia.organism import video
 from primordia.phylogeny.clades import clades_of
 from tests.synthetic import alive, world_of
 
@@ -245,7 +246,7 @@ def test_a_picture_has_its_words_and_the_life_in_their_places() -> None:
 
 
 def test_the_colours_of_a_gif_have_each_hue_dark_middle_and_light() -> None:
-    seen = np.asarray(with_colours(Image.new("RGB", (960, 576))))
+    seen = np.asarray(video.sample_of(Image.new("RGB", (960, 576)), cell_colours()))
     assert seen.shape == (2 * 144, 240, 3)
     assert not seen[:144].any(), "the picture itself is above"
     high = 144 // STRIPS

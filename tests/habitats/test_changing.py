@@ -10,7 +10,7 @@ from jax import lax
 from primordia.compiled import shared
 from primordia.config import load
 from primordia.errors import InputError
-from primordia.habitats.changing import Changed, advance, begin, changing
+from primordia.habitats.changing import Changed, advance, begin, changes_at, changing
 from primordia.habitats.contract import JaxHabitat
 from primordia.habitats.on_host import OnHost
 from primordia.testing import check_habitat
@@ -67,6 +67,16 @@ def test_changes_come_at_their_ages_periods_and_chances(past: Any) -> None:
     np.testing.assert_array_equal(every, age // period)
     assert binomial(int(chance[-1].sum()), BODIES * (TICKS - 1), 0.05)
     np.testing.assert_array_equal(fixed, np.broadcast_to(age // 10, fixed.shape))
+
+
+def test_the_ages_of_changes_can_be_told_from_any_moment_of_a_life(past: Any) -> None:
+    course, made, ages = past[0], mill(*CHANGES), np.arange(1, TICKS)
+    for number, moment in ((0, 0), (5, 50), (63, TICKS - 1)):
+        now = jax.tree.map(lambda leaf, at=moment, own=number: leaf[at, own], course)
+        came = (np.diff(course.times[:, number], axis=0) > 0).any(axis=1)
+        np.testing.assert_array_equal(changes_at(made, Changed(None, now), ages), came)
+    assert not changes_at(made, Changed(None, now), np.array([-40, 0])).any()
+    assert not changes_at(mill(), None, ages).any()
 
 
 def test_only_what_changes_is_changed_and_in_the_way_that_is_said(past: Any) -> None:

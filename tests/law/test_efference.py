@@ -28,6 +28,10 @@ class Witness(Brain):
     def memory(self, senses: int, outputs: int) -> int:
         return senses
 
+    def pictured(self, memory: Array, senses: int, outputs: int) -> dict[str, Array]:
+        assert memory.shape[1] == senses == 2 * SENSES + outputs
+        return {"kept": memory[:, None]}
+
     def __call__(self, genome: Any, memory: Array, senses: Array) -> tuple[Array, Array]:
         return senses, genome["output"] + senses[:, :1]
 
@@ -55,6 +59,13 @@ def test_the_last_senses_and_the_last_command_are_perceived(
     memory, _ = brain(genome, memory, second)
     perceived = [0, 9, 0, 7, *command]
     np.testing.assert_allclose(memory[0, : 2 * SENSES + size], perceived, rtol=1e-6)
+
+
+def test_pictures_show_what_the_inner_brain_remembers() -> None:
+    brain, size = Efferent(inner=Witness(), action=PARTS), PARTS.size
+    memory = jnp.arange(2.0 * brain.memory(SENSES, size)).reshape(2, -1)
+    (kept,) = brain.pictured(memory, SENSES, size).values()
+    np.testing.assert_array_equal(kept[:, 0], memory[:, : 2 * SENSES + size])
 
 
 @pytest.mark.parametrize("inner", [Linear(), Plastic(hidden=3)])

@@ -60,6 +60,7 @@ def perceived(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, int]]:
         return SENSES, MEMORY, BODY
 
     monkeypatch.setattr(companions, "_perceived", perceive)
+    monkeypatch.setattr("primordia.live.thoughts.is_shown", lambda law, habitat: False)
     return asked
 
 

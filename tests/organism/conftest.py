@@ -60,3 +60,15 @@ def poles(tmp_path_factory: pytest.TempPathFactory) -> Path:
     run = tmp_path_factory.mktemp("poles") / "run"
     stop = {"ticks": 6000, "until": "none"}
     return primordia.run("CartPole-survival", run, cells=16, seeds=2, stop=stop).path
+
+
+@pytest.fixture(scope="package")
+def learners(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Make a world of poles with plastic brains, whose buttons swap at the ages 6, 17 and 40."""
+    run = tmp_path_factory.mktemp("learners") / "run"
+    change = [{"kind": "reverse-actions", "at": [6, 17, 40]}]
+    brain, stop = {"kind": "plastic", "hidden": 3}, {"ticks": 90, "until": "none"}
+    many = {"cells": 8, "seed": 2, "genesis": "fill", "replication": 0.1}
+    settings = config(habitat={"change": change}, brain=brain, stop=stop, **many)
+    loop.start(settings, run)
+    return run

@@ -1,5 +1,6 @@
 """Lives that are lived again: their begin, their end, and how their death is compared with the record."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -193,6 +194,7 @@ def test_a_life_goes_on_with_the_stored_values_of_its_own_cell(
     assert (found.memory.tolist(), energy.tolist(), eaten.tolist()) == ([[6]], [16], [26])
     bodies: Any = found.bodies
     assert {name: body.tolist() for name, body in bodies.items()} == {"bodies.y": [[36]]}
+    assert replace(life_of(0), stored=arrays).memory.tolist() == [[6]]
 
 
 WHEN = np.arange(60, 73)

@@ -20,6 +20,10 @@ from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import bundle
 
 RATE = 50.0
+NO_PANELS: Any = SimpleNamespace(
+    follow=lambda stretch: None, under=lambda picture, *moment: picture
+)
+"""The panels of a life in a world without them."""
 
 
 def test_a_life_is_shown_in_two_parts_once_it_is_longer_than_both(
@@ -170,14 +174,20 @@ def test_a_film_has_the_speed_of_the_life_and_at_most_the_rate_of_its_kind_of_fi
 ) -> None:
     made: list[Any] = []
     monkeypatch.setattr(replay, "picture_rate", lambda life: rate)
+    monkeypatch.setattr(replay, "Panels", lambda *given: given)
+    monkeypatch.setattr("primordia.organism.reliving.panel.colours", lambda law, habitat: [])
     monkeypatch.setattr(replay, "_pictures", lambda *given: made.append(given))
-    monkeypatch.setattr(replay, "_side_by_side", lambda films: films)
-    monkeypatch.setattr(video, "write", lambda *given: made.append(given))
-    life: Any = "a life"
-    replay.film(Path(name), (life, [range(1, 9)]))
+    monkeypatch.setattr(replay, "_side_by_side", lambda films: iter(["first", "second"]))
+    monkeypatch.setattr(
+        video, "write", lambda path, shown, *more: made.append((path, [*shown], *more))
+    )
+    one, other = (SimpleNamespace(law=None, habitat=None) for _ in range(2))
+    short, long = [range(1, 9)], [range(1, 15)]
+    replay.film(Path(name), (one, short), (other, long))
     assert made == [
-        (life, [range(1, 9)], step, rate / step),
-        (Path(name), [None], rate / step),
+        (one, short, (one, short, 14), step, rate / step),
+        (other, long, (other, long, 14), step, rate / step),
+        (Path(name), ["first", "second"], rate / step, None),
     ]
 
 
@@ -199,10 +209,13 @@ def test_a_film_that_leaves_out_ticks_still_shows_the_tick_of_death(
         ends=born + age,
         stretches=lambda watched: iter(stretches),
     )
+    followed: list[Any] = []
     seen = [
         (part, int(stretch.tick[i]) - born)
-        for part, stretch, i in replay.moments(life, parts, step)
+        for part, stretch, i in replay.moments(life, parts, step, followed.append)
+        if followed[-1] is stretch
     ]
+    assert followed == stretches
     assert seen == [
         (number, at)
         for number, part in enumerate(parts)
@@ -291,7 +304,7 @@ def test_a_card_shows_the_number_of_ticks_that_are_left_out(
     monkeypatch.setattr(replay, "moments", lambda *given: iter([(0, None, 0), (1, None, 0)]))
     monkeypatch.setattr(replay, "picture_of", lambda *given: Image.new("RGB", (64, 36)))
     life: Any = None
-    list(replay._pictures(life, [range(1, 101), range(1331, 1431)], 1, RATE))
+    list(replay._pictures(life, [range(1, 101), range(1331, 1431)], NO_PANELS, 1, RATE))
     assert cards == [((64, 36), "1,230 ticks later")]
 
 
@@ -304,7 +317,7 @@ def test_cards_and_the_last_picture_stay_at_least_one_frame(
     monkeypatch.setattr(replay, "moments", lambda *given: iter(moments))
     monkeypatch.setattr(replay, "picture_of", lambda *given: picture)
     life: Any = None
-    frames = list(replay._pictures(life, [range(1, 3), range(9, 10)], 1, rate))
+    frames = list(replay._pictures(life, [range(1, 3), range(9, 10)], NO_PANELS, 1, rate))
     still = max(1, round(replay.STILL * rate))
     assert len(frames) == len(moments) + 2 * still
     assert [frame is picture for frame in frames[:3]] == [True, True, False]

@@ -165,6 +165,7 @@ def invented(**changed: Any) -> Any:
             [(0, 4, True), (1, 5, True)], [(0, 9, True), (1200, 1499, False)], until=2700
         ),
         "habitat": SimpleNamespace(kind="jax"),
+        "law": None,
         "path": Path("/somewhere/run"),
         "config": config(TORUS, seeds=2, hazard=0.0, about=""),
         "progress": SimpleNamespace(limits=config(TORUS, stop={"ticks": 2700}).stop),
@@ -185,6 +186,7 @@ def test_a_film_of_a_life_names_its_organism(monkeypatch: pytest.MonkeyPatch) ->
 
     monkeypatch.setattr(lives, "replay", replay)
     monkeypatch.setattr("primordia.device.prepare", lambda: None)
+    monkeypatch.setattr(lives, "is_shown", lambda law, habitat: law == "a law of learners")
     monkeypatch.setattr(lives, "LONGEST", {"jax": 1500, "host": 1})
     made = lives.films(invented())
     assert made["missing"] == ""
@@ -198,6 +200,8 @@ def test_a_film_of_a_life_names_its_organism(monkeypatch: pytest.MonkeyPatch) ->
         b"film of 0",
         b"film of 1",
     ]
+    assert not first["panel"]
+    assert lives.films(invented(law="a law of learners"))["films"][0]["panel"]
     alone = invented(lives=invented().lives.of_world(0))
     assert lives.films(alone)["films"][1]["about"] == "Organism 1: born at tick 1, 6 ticks, dead"
 

@@ -52,6 +52,24 @@ def test_every_figure_shows_and_the_page_loads_nothing_else(
     assert path.stat().st_size < 4_000_000
 
 
+def test_the_buttons_of_a_film_leave_its_panel_free(
+    cart: Path, page: Page, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("primordia.report.lives.PART", 1.0)
+    content = of_run(Archive(cart))
+    content["films"]["films"][1]["panel"] = True
+    (tmp_path / "page.html").write_text(made(content), encoding="utf-8")
+    page.open_file(tmp_path / "page.html")
+    free = []
+    for video in page.all("video"):
+        page.until(partial(is_loaded, page, video))
+        ratio = page.script("return arguments[0].videoHeight / arguments[0].videoWidth", video)
+        free.append(video.size["height"] - ratio * video.size["width"])
+    assert abs(free[0]) < 2
+    assert free[1] > 60
+    assert page.complaints() == []
+
+
 def test_light_and_dark_are_those_of_the_system_or_chosen(cart_page: Path, page: Page) -> None:
     page.prefers(color_scheme="dark")
     page.open_file(cart_page)

@@ -41,6 +41,18 @@ def check_brain(brain: Brain, senses: int, outputs: int) -> None:
     )
     tracing.typed("its memory", thought[0], (COUNT, length), jnp.float32)
     tracing.typed("its output", thought[1], (COUNT, outputs), jnp.float32)
+    shown = tracing.traced(
+        "pictured", lambda memory: brain.pictured(memory, senses, outputs), _floats(length)
+    )
+    tracing.need(
+        isinstance(shown, dict) and all(map(_is_map, shown.values())),
+        "does not give what pictures show as arrays of organisms, rows and columns, by name",
+    )
+
+
+def _is_map(found: object) -> bool:
+    shape: tuple[int, ...] = getattr(found, "shape", ())
+    return len(shape) == 3 and shape[0] == COUNT and min(shape) > 0
 
 
 def _floats(*shape: int) -> jax.ShapeDtypeStruct:

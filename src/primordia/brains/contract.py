@@ -63,6 +63,13 @@ class Brain(Settings, ABC):
         """Return the brain without learning within a life, for genomes of this one; None if the same."""
         return None
 
+    def pictured(self, memory: Array, senses: int, outputs: int) -> dict[str, Array]:
+        """Return what pictures show of memories (N, M), by name: (N, rows, columns) each, from -1 to 1.
+
+        `senses` and `outputs` are as in `blocks`. A row for each output stands beside that output.
+        """
+        return {}
+
     @abstractmethod
     def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
         """Think for one tick; all arrays are float32.

@@ -85,9 +85,17 @@ class Plastic(Brain):
         """Return the brain whose fast weights stay 0."""
         return self.model_copy(update={"bound": 0.0})
 
+    def pictured(self, memory: Array, senses: int, outputs: int) -> dict[str, Array]:
+        """Return the fast weights as shares of the bound, a row for each output; none without a bound."""
+        if not self.bound:
+            return {}
+        shape = layer("output", self.hidden, outputs)["output"]
+        fast = self._split(memory, senses, shape).fast / np.float32(self.bound)
+        return {"fast weights": fast.swapaxes(1, 2) if self.hidden <= outputs else fast}
+
     def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
         """Think for one tick; see `Brain`."""
-        last = self._split(genome, memory, senses)
+        last = self._split(memory, senses.shape[1], genome["output"].shape[1:])
         change = linear(genome, "modulator", senses - last.senses)
         signal = jnp.tanh(np.float32(self.modulator_gain) * change)
         bound, kept = np.float32(self.bound), np.float32(1 - self.decay)
@@ -97,12 +105,12 @@ class Plastic(Brain):
         now = _Memory(senses, hidden, self._activity(output), fast.reshape(len(fast), -1))
         return jnp.concatenate(now, axis=1), output
 
-    def _split(self, genome: Genome, memory: Array, senses: Array) -> _Memory:
-        shape = genome["output"].shape
-        outputs = shape[1] * shape[2] // self.hidden
-        ends = np.cumsum([senses.shape[1], self.hidden, outputs])
+    def _split(self, memory: Array, senses: int, shape: Shape) -> _Memory:
+        """Return the parts of memories (N, M); `shape` is that of the block `output`."""
+        outputs = shape[0] * shape[1] // self.hidden
+        ends = np.cumsum([senses, self.hidden, outputs])
         before, hidden, active, fast = jnp.split(memory, ends, axis=1)
-        return _Memory(before, hidden, active, fast.reshape(shape))
+        return _Memory(before, hidden, active, fast.reshape(-1, *shape))
 
     def _rule(self, genome: Genome, last: _Memory, signal: Array) -> Array:
         """Return the change of each fast weight, with the shape of the block `output`."""

@@ -89,6 +89,7 @@ def replay(
     births.
     With --beside, lives of the same world are shown side by side, each from birth, in order of birth.
     A life that has ended stays at the last picture.
+    If brains learn or the world changes within lives, a panel shows fast weights, outputs and changes.
     """
     click.echo(chosen_organism(run, **chosen).replay(out, (begin, end), beside))
 

@@ -11,6 +11,7 @@ from PIL import Image
 from primordia.film.moments import RATE
 from primordia.film.oldest import oldest_so_far, shown
 from primordia.organism.reliving import replay
+from primordia.organism.reliving.panel import Panels
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
@@ -34,16 +35,17 @@ def oldest(run: Records, lives: Lives, ticks: np.ndarray) -> Iterator[Beside]:
         lives: the lives of one world.
         ticks: the moments, int64 (F,).
     """
-    now = -1
-    for row in shown(oldest_so_far(lives, ticks), LEAST).tolist():
+    now, rows = -1, shown(oldest_so_far(lives, ticks), LEAST)
+    for row in rows.tolist():
         if row != now:
-            now, pictures = row, pictures_of(run, int(lives.id[row]), int(lives.world[row]))
+            now, count = row, int((rows == row).sum())
+            pictures = pictures_of(run, int(lives.id[row]), int(lives.world[row]), count)
         yield Beside(next(pictures), f"the oldest so far: organism {lives.id[row]:,}")
 
 
 def chosen(run: Records, organism: int, world: int, count: int) -> Iterator[Beside]:
     """Yield this number of pictures of one organism's life."""
-    pictures = pictures_of(run, organism, world)
+    pictures = pictures_of(run, organism, world, count)
     for _ in range(count):
         yield Beside(next(pictures), f"organism {organism:,}")
 
@@ -53,8 +55,14 @@ def nothing(count: int) -> Iterator[Beside]:
     yield from repeat(Beside(None, ""), count)
 
 
-def pictures_of(run: Records, organism: int, world: int) -> Iterator[Image.Image]:
+def pictures_of(run: Records, organism: int, world: int, count: int) -> Iterator[Image.Image]:
     """Yield a life's pictures, RATE of them for each second lived; the last is repeated for ever.
+
+    Args:
+        run: the organism's run.
+        organism: birth number.
+        world: the organism's world.
+        count: the number of pictures that are needed.
 
     Raises:
         InputError: the life cannot be lived again or has no tick yet, or its habitat draws no pictures.
@@ -62,10 +70,11 @@ def pictures_of(run: Records, organism: int, world: int) -> Iterator[Image.Image
     """
     life = RelivedLife.of(run, organism, world)
     rate, whole = replay.picture_rate(life), replay.parts_of(life, (0, None))
-    for tick, (_, stretch, i) in enumerate(replay.moments(life, whole, 1)):
+    panels = Panels(life, whole, min(ceil(count * rate / RATE), len(whole[0])))
+    for tick, (_, stretch, i) in enumerate(replay.moments(life, whole, 1, panels.follow)):
         number = pictures_at(tick, rate)
         if number or stretch.tick[i] == life.ends:
-            picture = replay.picture_of(life, stretch, i)
+            picture = panels.under(replay.picture_of(life, stretch, i), 0, stretch, i)
         yield from repeat(picture, number)
     yield from repeat(picture)
 

@@ -12,12 +12,12 @@ from primordia.errors import InputError
 from primordia.film import beside
 from primordia.film.beside import Beside
 from primordia.film.colours import colours
-from primordia.film.frame import Frames, with_colours
+from primordia.film.frame import Frames, cell_colours
 from primordia.film.moments import RATE, By, moments
 from primordia.film.shape import shape
 from primordia.history import series
 from primordia.organism import video
-from primordia.organism.reliving import replay
+from primordia.organism.reliving import panel, replay
 from primordia.progress import tell
 from primordia.runs import bundle
 from primordia.runs.lives import Lives
@@ -68,7 +68,8 @@ def film(
     first = next(pictures)
     if out is None:
         files.own_folder(path.parent)
-    video.write(path, chain([first], pictures), RATE, with_colours(first))
+    sample = video.sample_of(first, cell_colours(), *panel.colours(run.law, run.habitat))
+    video.write(path, chain([first], pictures), RATE, sample)
     return path
 
 

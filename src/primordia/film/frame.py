@@ -5,7 +5,7 @@ from PIL import Image, ImageDraw, ImageOps
 
 from primordia.film.colours import DARKEST, PALETTE
 from primordia.film.shape import PAPER, SIDE
-from primordia.organism.reliving.replay import font
+from primordia.habitats.framed import font
 
 WIDTH, HEIGHT, EDGE = 960, 576, 20
 """pixels of the whole picture, and of its margins"""
@@ -55,13 +55,7 @@ class Frames:
         return picture
 
 
-def with_colours(picture: Image.Image) -> Image.Image:
-    """Return a small copy of a picture, with a strip of the colours that cells can have."""
-    small = picture.resize((WIDTH // 4, HEIGHT // 4), Image.Resampling.BILINEAR)
+def cell_colours() -> np.ndarray:
+    """Return strips of the colours that cells can have, uint8 (STRIPS, HUES, 3)."""
     lights = np.linspace(DARKEST, 1, STRIPS)[:, None, None]
-    strips = np.clip(PALETTE * lights, 0, 255).astype(np.uint8)
-    strip = Image.fromarray(strips).resize((small.width, small.height), Image.Resampling.NEAREST)
-    both = Image.new("RGB", (small.width, 2 * small.height))
-    both.paste(small, (0, 0))
-    both.paste(strip, (0, small.height))
-    return both
+    return np.clip(PALETTE * lights, 0, 255).astype(np.uint8)

@@ -66,13 +66,18 @@ def advance(changes: tuple[Kind, ...], course: Course) -> Course:
     key, age = course.key, course.age + 1
     counts, states = [], []
     for i, (change, state) in enumerate(zip(changes, course.state, strict=True)):
-        comes = change.comes(age, course.period[:, i], word_of(key, age, 2 * i))
+        comes = _comes(change, i, key, age, course.period)
         after = lax.cond(  # random draws are made in ticks with a change only
             comes.any(), lambda s, n=2 * i + 1, c=change: c.next(s, key, age, n), lambda s: s, state
         )
         counts.append(course.times[:, i] + comes)
         states.append(select_bodies(comes, after, state))
     return course._replace(age=age, times=jnp.stack(counts, axis=1), state=tuple(states))
+
+
+def _comes(change: Kind, number: int, key: Wide, age: Array, period: Array) -> Array:
+    """Return for which bodies a change comes at an age, bool (N,); `period` is (N, C)."""
+    return change.comes(age, period[:, number], word_of(key, age, 2 * number))
 
 
 def act(changes: tuple[Kind, ...], kind: Action, course: Course, action: Array) -> Array:
@@ -226,6 +231,23 @@ def changing(habitat: AnyHabitat, changes: tuple[Kind, ...]) -> AnyHabitat:
     if isinstance(habitat, JaxHabitat):
         return ChangingInJax(habitat, changes)
     return ChangingOnHost(habitat, changes)
+
+
+def changes_at(habitat: AnyHabitat, body: Bodies, ages: np.ndarray) -> np.ndarray:
+    """Return at which ages the world of a body changes, in the past or the future: bool (n,).
+
+    Args:
+        habitat: the habitat.
+        body: one body, no first axis, as a picture takes it.
+        ages: int (n,), ticks.
+    """
+    if not isinstance(habitat, _Wrapper):
+        return np.zeros(len(ages), bool)
+    age, course = jnp.asarray(ages, jnp.int32), body.course
+    key = course.key.map(lambda word: jnp.broadcast_to(word, age.shape))
+    period = jnp.broadcast_to(course.period, (len(ages), len(habitat.changes)))
+    comes = [_comes(change, i, key, age, period) for i, change in enumerate(habitat.changes)]
+    return np.asarray(jnp.stack(comes).any(axis=0) & (age > 0))
 
 
 def unchanging(habitat: AnyHabitat) -> AnyHabitat:

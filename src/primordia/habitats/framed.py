@@ -1,6 +1,8 @@
 """Pictures of bodies, with a margin above for the captions of a replay."""
 
-from PIL import Image
+from functools import cache
+
+from PIL import Image, ImageFont
 
 PAPER = "#fbfaf7"
 MARGIN = 56
@@ -12,3 +14,9 @@ def framed(picture: Image.Image) -> Image.Image:
     paper = Image.new("RGB", (picture.width, picture.height + MARGIN), PAPER)
     paper.paste(picture, (0, MARGIN))
     return paper
+
+
+@cache
+def font(size: int) -> ImageFont.ImageFont | ImageFont.FreeTypeFont:
+    """Return the font of a size in pixels."""
+    return ImageFont.load_default(size)

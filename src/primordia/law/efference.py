@@ -35,6 +35,11 @@ class Efferent(Brain):
         inner = self.inner.innate()
         return None if inner is None else self.model_copy(update={"inner": inner})
 
+    def pictured(self, memory: Array, senses: int, outputs: int) -> dict[str, Array]:
+        """Return what pictures show of the inner memory."""
+        own = memory[:, : -(senses + outputs)]
+        return self.inner.pictured(own, 2 * senses + outputs, outputs)
+
     def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
         """Think for one tick; see `Brain`."""
         kept = senses.shape[1] + self.action.size

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 import numpy as np
-from PIL import Image
+from PIL import Image, ImageDraw
 from rich.segment import Segment
 
 from primordia.compiled import shared
@@ -13,14 +13,14 @@ from primordia.engine.engine import Engine
 from primordia.habitats.contract import Bodies, JaxHabitat
 from primordia.habitats.framed import MARGIN, PAPER
 from primordia.law.metabolism import ONE
+from primordia.live import thoughts
 from primordia.live.forms import Room
 from primordia.live.paint import FAINT, Row, levels, photograph
 from primordia.live.panel import STRONG
+from primordia.live.thoughts import LABEL
+from primordia.organism.inside import CHANGED, since_change
 from primordia.organism.mind import Mind, think
 from primordia.random.wide import to_host, wide
-
-LABEL = 11
-"""columns of a name, with the gap after it"""
 
 
 class Body(NamedTuple):
@@ -85,9 +85,11 @@ class Companion:
         facts |= {"does next": self._caption(engine, body), "senses": levels(senses)}
         facts["memory"] = levels(memory)
         below = [_fact(name, text, room.width) for name, text in facts.items() if text]
+        ago = since_change(engine.habitat, body.body, age)
+        below += thoughts.rows(engine, cell, senses, memory, ago, room.width)
         below = below[: max(room.height - 1, 0)]
         left = room.height - 1 - len(below)
-        picture = self._picture(engine, body, Room(room.width, left))
+        picture = self._picture(engine, body, Room(room.width, left), ago is not None)
         return [[Segment(title[: room.width], STRONG)], *picture, *below]
 
     def _caption(self, engine: Engine, body: Body) -> str:
@@ -96,8 +98,10 @@ class Companion:
         except Exception:  # see _picture
             return np.array2string(body.action, precision=2)
 
-    def _picture(self, engine: Engine, body: Body, room: Room) -> list[Row]:
-        """Return a picture of the body; no rows if the habitat cannot draw the body.
+    def _picture(self, engine: Engine, body: Body, room: Room, changed: bool) -> list[Row]:
+        """Return a picture of the body, with a frame if its world has `changed`.
+
+        There are no rows if the habitat cannot draw the body.
 
         Emulators and many environments draw only bodies that are watched from birth. Other people
         wrote the code that draws, and an error in this code must not end the run.
@@ -115,6 +119,9 @@ class Companion:
         zoom = min(room.width / wide, 2 * room.height / high)
         size = max(int(wide * zoom), 1), max(int(high * zoom) // 2 * 2, 2)
         small = Image.fromarray(pixels).resize(size, Image.Resampling.BOX)
+        if changed:
+            edges = (0, 0, size[0] - 1, size[1] - 1)
+            ImageDraw.Draw(small).rectangle(edges, outline=CHANGED)
         return photograph(np.asarray(small))
 
 
@@ -139,7 +146,9 @@ def _perceived(engine: Engine, cell: int, world: int) -> tuple[np.ndarray, np.nd
     mind = Mind(own(organisms.genome), wide(seed), jnp.array([cell % law.cells], jnp.int32))
     memory, perceived = own(organisms.memory), law.perceived(senses, own(organisms.energy))
     thought = shared(think, law)(mind, memory, perceived, wide(tick + np.uint64(1)))
-    alone = jax.tree.map(lambda leaf: np.asarray(leaf)[0], (senses, memory, seen, thought.action))
+    alone = jax.tree.map(
+        lambda leaf: np.asarray(leaf)[0], (perceived, memory, seen, thought.action)
+    )
     return alone[0], alone[1], Body(alone[2], alone[3])
 
 

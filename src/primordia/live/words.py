@@ -48,6 +48,9 @@ WORDS = {
     "senses": "What the organism perceives: a bar for each sense, lowest at -1, highest at 1.",
     "memory": "What the brain keeps from tick to tick, drawn as the senses are.",
     "does next": "The action that the brain chooses from these senses.",
+    "outputs": "What the brain puts out for this action: a bar for each output; bright ones act.",
+    "fast weights": "What the organism has learned, a row for each output: blue -, red +.",
+    "changes": "How long ago the organism's world changed, if that is new; a frame shows it too.",
 }
 
 

@@ -52,6 +52,17 @@ def write(
         raise InputError(f"{longest}; write an .mp4") from None
 
 
+def sample_of(picture: Image.Image, *strips: np.ndarray) -> Image.Image:
+    """Return a small copy of a picture above strips of colours, uint8 (rows, columns, 3) each."""
+    small = picture.resize((picture.width // 4, picture.height // 4), Image.Resampling.BILINEAR)
+    whole = Image.new("RGB", (small.width, (1 + len(strips)) * small.height))
+    whole.paste(small)
+    for number, strip in enumerate(strips, 1):
+        wide = Image.fromarray(strip).resize(small.size, Image.Resampling.NEAREST)
+        whole.paste(wide, (0, number * small.height))
+    return whole
+
+
 def _mp4(path: Path, pictures: Iterator[Image.Image], rate: float) -> None:
     """Write H.264 in yuv420p, which browsers and slides play."""
     first = next(pictures)

@@ -11,6 +11,7 @@ import numpy as np
 
 from primordia import device, interrupts
 from primordia.errors import InputError, Trouble
+from primordia.organism.inside import is_shown
 from primordia.organism.reliving.replay import replay
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
@@ -29,7 +30,8 @@ def films(run: Records) -> dict[str, Any]:
     code that the user has trusted.
 
     Returns:
-        `films`: each with its `title`, a description (`about`), and `data`, an MP4 in base64;
+        `films`: each with its `title`, a description (`about`), `data`, an MP4 in base64, and `panel`:
+        whether it has one below the body;
         `missing`: the reason why a life is not shown, or "".
     """
     rows = chosen(run.lives)
@@ -56,7 +58,7 @@ def chosen(lives: Lives) -> dict[str, int]:
     }
 
 
-def _film(run: Records, title: str, row: int) -> dict[str, str]:
+def _film(run: Records, title: str, row: int) -> dict[str, Any]:
     number, world = int(run.lives.id[row]), int(run.lives.world[row])
     kind, ticks = run.habitat.kind, int(run.lives.lifespan[row])
     if ticks > LONGEST[kind]:
@@ -76,4 +78,5 @@ def _film(run: Records, title: str, row: int) -> dict[str, str]:
     about = (
         f"Organism {number:,}{where}: born at tick {run.lives.born[row]:,}, {ticks:,} ticks, {end}"
     )
-    return {"title": title, "about": about, "data": data}
+    panel = is_shown(run.law, run.habitat)
+    return {"title": title, "about": about, "data": data, "panel": panel}

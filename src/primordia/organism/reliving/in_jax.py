@@ -64,9 +64,8 @@ def _lived(
 
     def step(now: Instant, each: tuple[Wide, Rates, Array, Array]) -> tuple[Instant, tuple]:
         tick, rates, given, real = each
-        senses = habitat.sense(now.bodies)
-        perceived = law.perceived(senses, now.vitals.energy)
-        thought = think(law, mind, now.memory, perceived, tick.map(jnp.atleast_1d))
+        senses = law.perceived(habitat.sense(now.bodies), now.vitals.energy)
+        thought = think(law, mind, now.memory, senses, tick.map(jnp.atleast_1d))
         bodies, outcome = habitat.step(now.bodies, thought.action)
         after, cause = judged(law, now, thought, bodies, outcome, rates, given)
         columns = senses, thought.action, bodies, *after.vitals, cause

@@ -50,7 +50,7 @@ class LifeOnHost:
             this = np.s_[i : i + 1]
             perceived = self._law.perceived(now.bodies, now.vitals.energy)
             thought = self._think(self._mind, now.memory, perceived, tick.take(this))
-            before, action = np.array(now.bodies), np.asarray(thought.action)
+            before, action = np.array(perceived), np.asarray(thought.action)
             senses, outcome = self._habitat.step(action, np.ones(1, bool))
             own = Rates._make(None if each is None else each[this] for each in rates)
             now, cause = self._judged(now, thought, senses, outcome, own, given[this])

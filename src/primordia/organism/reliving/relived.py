@@ -116,6 +116,13 @@ class RelivedLife:
         """The cause of death; None if the organism is alive."""
         return Cause(self.record.cause[0]) if self.record.died[0] else None
 
+    @property
+    def memory(self) -> Array:
+        """The memory with which the relived life begins, float32 (1, M)."""
+        if self.stored is None:
+            return jnp.zeros((1, self.law.memory), jnp.float32)
+        return self._own(self.stored, "memory")
+
     def stretches(self, watched: bool = False) -> Generator[Stretch, None, None]:
         """Live the whole life in order, and yield it some ticks at a time.
 
@@ -179,23 +186,25 @@ class RelivedLife:
             return self._restored(alone, self.stored)
         key = stream(self._seed, Purpose.BODY, wide(self.record.born))
         words = body_words(key, jnp.asarray(self.record.cell), self.habitat.words)
-        memory = jnp.zeros((1, self.law.memory), jnp.float32)
         if self.law.act is None:
             store = to_fixed_point(self._climate(np.array([self.begins]))["metabolism.store"])
         else:
             store = jnp.asarray(self.run.endowments_of(self.record))
         vitals = Vitals(store, jnp.zeros(1, jnp.int32))
-        return Instant(memory, vitals, alone.embody(words))
+        return Instant(self.memory, vitals, alone.embody(words))
 
     def _restored(self, alone: LifeInJax | LifeOnHost, arrays: Mapping[str, np.ndarray]) -> Instant:
-        cell = [place_in(arrays, int(self.record.id[0]), self.world)]
-
-        def own(name: str) -> Array:
-            return jnp.asarray(arrays[f"world.organisms.{name}"][cell])
-
+        cell = self._place(arrays)
         bodies = {name: array[cell] for name, array in arrays.items() if name.startswith("bodies")}
-        vitals = Vitals(own("energy"), own("eaten"))
-        return Instant(own("memory"), vitals, alone.restore(bodies))
+        memory, energy, eaten = (self._own(arrays, name) for name in ("memory", "energy", "eaten"))
+        return Instant(memory, Vitals(energy, eaten), alone.restore(bodies))
+
+    def _own(self, arrays: Mapping[str, np.ndarray], name: str) -> Array:
+        """Return the organism's own values of an array of a state, (1, ...)."""
+        return jnp.asarray(arrays[f"world.organisms.{name}"][self._place(arrays)])
+
+    def _place(self, arrays: Mapping[str, np.ndarray]) -> list[int]:
+        return [place_in(arrays, int(self.record.id[0]), self.world)]
 
     def _check(self, stretch: Stretch) -> None:
         """Compare a stretch with the record: tick and cause of death, energy left, food eaten.

@@ -1,22 +1,23 @@
 """Videos of lives that are lived again."""
 
-from collections.abc import Iterator, Sequence
-from functools import cache
+from collections.abc import Callable, Iterator, Sequence
 from itertools import chain, repeat, zip_longest
 from math import ceil, isqrt
 from pathlib import Path
 
 import jax
 import numpy as np
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image, ImageDraw
 
 from primordia import files
 from primordia.errors import InputError
 from primordia.habitats.contract import Ability, AnyHabitat
-from primordia.habitats.framed import PAPER
+from primordia.habitats.framed import PAPER, font
 from primordia.law.metabolism import ONE
 from primordia.organism import video
+from primordia.organism.reliving import panel
 from primordia.organism.reliving.instant import Stretch
+from primordia.organism.reliving.panel import Panels
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import bundle
 from primordia.runs.records import Records, on_its_device
@@ -82,8 +83,15 @@ def film(path: Path, *shown: tuple[RelivedLife, list[range]]) -> None:
     """
     rate = picture_rate(shown[0][0])
     step = ceil(rate / video.FASTEST[path.suffix])
-    films = [_pictures(life, parts, step, rate / step) for life, parts in shown]
-    video.write(path, _side_by_side(films), rate / step)
+    longest = max(len(part) for _, parts in shown for part in parts)
+    films = [
+        _pictures(life, parts, Panels(life, parts, longest), step, rate / step)
+        for life, parts in shown
+    ]
+    pictures = _side_by_side(films)
+    first, strips = next(pictures), panel.colours(shown[0][0].law, shown[0][0].habitat)
+    sample = video.sample_of(first, *strips) if strips else None
+    video.write(path, chain([first], pictures), rate / step, sample)
 
 
 def lacking(habitat: AnyHabitat) -> list[str]:
@@ -129,18 +137,18 @@ def parts_of(
 
 
 def _pictures(
-    life: RelivedLife, parts: list[range], step: int, rate: float
+    life: RelivedLife, parts: list[range], panels: Panels, step: int, rate: float
 ) -> Iterator[Image.Image]:
     """Yield a picture of every `step`-th tick of the parts; the last one is repeated.
 
     A card between two parts tells the time that is left out.
     """
     still, part, picture = max(1, round(STILL * rate)), 0, None
-    for part_now, stretch, i in moments(life, parts, step):
+    for part_now, stretch, i in moments(life, parts, step, panels.follow):
         if part_now > part and picture is not None:
             left_out = parts[part_now].start - parts[part].stop
             yield from repeat(_card(picture.size, f"{left_out:,} ticks later"), still)
-        part, picture = part_now, picture_of(life, stretch, i)
+        part, picture = part_now, panels.under(picture_of(life, stretch, i), part_now, stretch, i)
         yield picture
     assert picture is not None
     yield from repeat(picture, still)
@@ -162,9 +170,15 @@ def _side_by_side(films: list[Iterator[Image.Image]]) -> Iterator[Image.Image]:
         yield whole
 
 
-def moments(life: RelivedLife, parts: list[range], step: int) -> Iterator[tuple[int, Stretch, int]]:
-    """Yield, for each tick shown, the number of its part, its stretch, and its index in the stretch."""
+def moments(
+    life: RelivedLife, parts: list[range], step: int, follow: Callable[[Stretch], None]
+) -> Iterator[tuple[int, Stretch, int]]:
+    """Yield, for each tick shown, the number of its part, its stretch, and its index in the stretch.
+
+    `follow` is called with each stretch of the life before its ticks.
+    """
     for stretch in life.stretches(watched=True):
+        follow(stretch)
         ages = stretch.tick - life.record.born[0]
         for number, part in enumerate(parts):
             shown = (ages >= part.start) & (ages < part.stop)
@@ -194,12 +208,6 @@ def _captioned(picture: Image.Image, left: str, right: str, below: str) -> Image
     pen.text((14, 32), below, INK, letters)
     pen.text((picture.width - 14, 12), right, INK, letters, anchor="ra")
     return picture
-
-
-@cache
-def font(size: int) -> ImageFont.ImageFont | ImageFont.FreeTypeFont:
-    """Return the font of a size in pixels."""
-    return ImageFont.load_default(size)
 
 
 def _card(size: tuple[int, int], words: str) -> Image.Image:

@@ -1,0 +1,144 @@
+"""The panel below the pictures of a life: brains that think again, the past, and marks of changes."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image, ImageColor, ImageDraw
+
+from primordia.brains.plastic import Plastic
+from primordia.habitats.framed import PAPER
+from primordia.organism.inside import CHANGED, squashed, tints
+from primordia.organism.reliving import panel, replay
+from primordia.organism.reliving.in_jax import LifeInJax
+from primordia.organism.reliving.panel import BLANK, FRAME, HEIGHT, Panels, Past
+from primordia.organism.reliving.relived import RelivedLife
+from primordia.runs.archive import Archive
+
+MARK, EMPTY = (np.array(ImageColor.getrgb(each)) for each in (CHANGED, BLANK))
+PICTURE = Image.new("RGB", (640, 100), (90, 90, 90))
+
+
+def oldest(run: Path, died: bool) -> RelivedLife:
+    """Return the longest of the lives that have ended, or of those that go on."""
+    archive = Archive(run)
+    lives = archive.lives
+    rows = np.flatnonzero(lives.died == died)
+    return RelivedLife.of(archive, int(lives.id[rows[np.argmax(lives.lifespan[rows])]]))
+
+
+def moments(
+    life: RelivedLife, *ages: range, length: int | None = None
+) -> Iterator[tuple[int, np.ndarray]]:
+    """Yield ages and pictures with their panels, for parts of a life."""
+    panels = Panels(life, ages, length or max(map(len, ages)))
+    for part, stretch, i in replay.moments(life, list(ages), 1, panels.follow):
+        age = int(stretch.tick[i] - life.record.born[0])
+        yield age, np.asarray(panels.under(PICTURE, part, stretch, i))
+
+
+def test_a_brain_that_thinks_again_ends_with_the_memory_on_record(
+    learners: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The life is lived in stretches of 24 ticks, and the last one is shorter."""
+    monkeypatch.setattr(LifeInJax, "TICKS", 24)
+    life = oldest(learners, died=False)
+    panels = Panels(life, [range(1, 9)], 8)
+    for stretch in life.stretches():
+        panels.follow(stretch)
+        np.testing.assert_array_equal(np.argmax(panels._output, axis=1), stretch.action)
+    assert life.ends - life.begins > 24
+    memory = life.run.state["world.organisms.memory"][int(life.record.cell[0])]
+    np.testing.assert_array_equal(panels._memory[0], memory)
+    bound = Plastic().bound
+    np.testing.assert_allclose(panels._shown["fast weights"][-1].ravel(), memory[-6:] / bound)
+
+
+def test_a_frame_and_marks_show_the_changes_of_a_world(learners: Path) -> None:
+    """The world changes at the ages 6, 17 and 40, and each change is shown as new for 25 ticks."""
+    life = oldest(learners, died=False)
+    last = life.ends - int(life.record.born[0])
+    assert last > 44
+    for age, seen in moments(life, range(1, 5), range(38, last + 1)):
+        assert seen.shape == (100 + HEIGHT, 640, 3)
+        edge = (seen[:FRAME, :] == MARK).all()
+        assert edge == ((38 <= age < 42 or 40 <= age < 65) and age < last), age
+        assert (seen[FRAME : 100 - FRAME, FRAME:-FRAME] == 90).all()
+        marks = (seen[-12, :520] == MARK).all(axis=1)
+        assert marks.any() == (age >= 40), "a change to come is pale, and the first is not shown"
+    for _, seen in moments(
+        life, range(41, last + 1), length=90
+    ):  # a mark is five pixels wide on each side
+        assert not (seen[-12, :520] == MARK).all(axis=1).any(), "the change was before this part"
+
+
+def test_the_past_is_drawn_up_to_the_present_age_and_on_one_scale() -> None:
+    """The part has the ages 11 to 20, on a scale of 20 ticks; two rows of numbers."""
+    past, values = Past(range(11, 21), 20), np.linspace(-1, 1, 40).reshape(20, 2)
+    for first in (1, 8, 15):
+        past.take(first, values[first - 1 : first + 6].astype(np.float32))
+    seen = np.asarray(past.drawn(200, 14))
+    assert seen.shape == (panel.TALL, 200, 3)
+    assert (seen[:, 40:] == EMPTY).all()
+    for age in range(11, 15):
+        for row in range(2):
+            place = seen[row * 48 + 24, (age - 11) * 10 + 5]
+            np.testing.assert_allclose(place, tints(values[age - 1, row]), atol=1)
+
+
+def test_without_fast_weights_the_past_is_that_of_the_outputs(learners: Path) -> None:
+    """The organism was born late, and its brain does not learn. Outputs are drawn as bars of theirs."""
+    archive = Archive(learners)
+    rows = np.flatnonzero((archive.lives.born > 5) & (archive.lives.lifespan > 5))
+    born = RelivedLife.of(archive, int(archive.lives.id[rows[0]]))
+    life = replace(born, law=replace(born.law, brain=Plastic(hidden=3, bound=0.0)))
+    panels = Panels(life, [range(1, 6)], 5)
+    panels.follow(next(life.stretches()))
+    assert panels._shown == {}
+    np.testing.assert_array_equal(panels._pasts[0]._rows, squashed(panels._output[:5]).T)
+
+
+def test_bars_go_to_the_side_of_their_sign_and_those_that_act_are_dark() -> None:
+    """Two outputs, of 3 and -1, are three quarters and half as long as they could be."""
+    picture = Image.new("RGB", (200, panel.TALL), PAPER)
+    panel._bars(
+        ImageDraw.Draw(picture), (0, 0, 200), np.array([3.0, -1.0]), np.array([True, False])
+    )
+    seen = np.asarray(picture)
+    for row, colour, first, last in ((24, panel.INK, 101, 175), (72, panel.PLAIN, 50, 99)):
+        (columns,) = np.nonzero((seen[row] == ImageColor.getrgb(colour)).all(axis=1))
+        columns = columns[columns != 100]  # the line in the middle
+        assert (columns.min(), columns.max(), len(columns)) == (first, last, last + 1 - first)
+
+
+def test_a_panel_fits_below_a_narrow_picture(learners: Path) -> None:
+    """The picture is in the middle of the width that a panel needs."""
+    life, small = oldest(learners, died=False), PICTURE.resize((84, 84))
+    panels = Panels(life, [range(1, 3)], 2)
+    for part, stretch, i in replay.moments(life, [range(1, 3)], 1, panels.follow):
+        seen = np.asarray(panels.under(small, part, stretch, i))
+        assert seen.shape == (84 + HEIGHT, panel.NARROWEST, 3)
+        (columns,) = np.nonzero((seen[:84] == 90).all(axis=(0, 2)))
+        assert (columns[0], len(columns)) == ((panel.NARROWEST - 84) // 2, 84)
+
+
+def test_worlds_without_learning_and_changes_keep_their_pictures(poles: Path) -> None:
+    life = oldest(poles, died=True)
+    panels, nothing = Panels(life, [range(1, 5)], 4), None
+    panels.follow(nothing)
+    assert panels.under(PICTURE, 0, nothing, 0) is PICTURE
+    assert panel.colours(life.law, life.habitat) == []
+
+
+def test_a_life_is_filmed_with_its_panel(learners: Path, tmp_path: Path) -> None:
+    """A GIF has the colours of panels, although its first picture is without marks."""
+    life: Any = oldest(learners, died=False)
+    path = replay.replay(life.run, int(life.record.id[0]), out=tmp_path / "a.gif", ages=(4, 8))
+    with Image.open(path) as film:
+        assert film.size == (320, (360 + HEIGHT) // 2)
+        film.seek(2)
+        framed = np.asarray(film.convert("RGB"), int)[:2, :320]
+    assert np.abs(framed - MARK).max() < 24
