@@ -28,6 +28,8 @@ def check(config: Any) -> None:
         raise InputError("replication.kind: an act costs energy, so it needs a metabolism; add one")
     if config.brain.get("interoception") and config.metabolism is None:
         raise InputError("brain.interoception: without a metabolism there is no energy to perceive")
+    if config.brain.get("price") and config.metabolism is None:
+        raise InputError("brain.price: learning costs energy, so it needs a metabolism; add one")
     continuous = any(isinstance(part, Continuous) for part in habitat.action.parts)
     if config.motor.kind == "gaussian" and not continuous:
         raise InputError(

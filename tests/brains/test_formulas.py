@@ -1,5 +1,6 @@
 """Brains compared with their formulas in NumPy, in float64."""
 
+from itertools import pairwise
 from typing import Any
 
 import jax.numpy as jnp
@@ -140,6 +141,19 @@ def test_the_plastic_brain_follows_its_formula(
         (shown,) = brain.pictured(memory, SENSES, OUTPUTS).values()
         np.testing.assert_allclose(shown, fast.swapaxes(1, 2) / 2, atol=1e-3)
     assert (np.abs(fast) == 2).mean() > 0.05
+
+
+@pytest.mark.parametrize("hidden", [HIDDEN, 2])
+def test_learning_costs_energy_for_each_change_of_a_fast_weight(hidden: int) -> None:
+    """The last numbers of a memory are the fast weights."""
+    brain = Plastic(hidden=hidden, gain=1.0, price=0.25)
+    *_, memories, _ = thought(brain)
+    size = hidden * OUTPUTS
+    for before, after in pairwise(memories):
+        found = brain.spent(before, after, SENSES, OUTPUTS)
+        change = np.abs(after[:, -size:] - before[:, -size:]).sum(axis=1)
+        np.testing.assert_allclose(found, 0.25 * change, rtol=1e-5)
+    assert Plastic(hidden=hidden).spent(before, after, SENSES, OUTPUTS) is None
 
 
 def test_a_plastic_brain_with_a_bound_of_0_does_not_learn() -> None:

@@ -73,6 +73,17 @@ def test_it_is_a_brain_like_any_other(inner: Brain) -> None:
     check_brain(Efferent(inner=inner, action=PARTS), 3, PARTS.size)
 
 
+def test_the_price_of_learning_is_that_of_the_inner_brain() -> None:
+    brain = Efferent(inner=Plastic(hidden=3, price=2.0), action=PARTS)
+    senses, outputs = 4, PARTS.size + 1  # one output that decides about copies
+    length, last = brain.memory(senses, outputs), senses + PARTS.size
+    before, after = np.random.default_rng(3).normal(size=(2, 5, length)).astype(np.float32)
+    fast = np.s_[:, length - last - 3 * outputs : length - last]
+    expected = 2 * np.abs(after[fast] - before[fast]).sum(axis=1)
+    found: Any = brain.spent(jnp.asarray(before), jnp.asarray(after), senses, outputs)
+    np.testing.assert_allclose(found, expected, rtol=1e-5)
+
+
 def test_without_plasticity_the_inner_brain_does_not_learn() -> None:
     assert Efferent(inner=Linear(), action=PARTS).innate() is None
     innate: Any = Efferent(inner=Plastic(), action=PARTS).innate()

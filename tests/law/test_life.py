@@ -1,6 +1,6 @@
 """One tick with invented outcomes: causes of death, food, energy, and which organisms replicate."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache, partial
 from itertools import product
 from typing import Any
@@ -106,13 +106,26 @@ def test_food_is_counted_with_a_metabolism_and_without() -> None:
 NUMBERS = Continuous(3)
 
 
+@dataclass(frozen=True)
+class Free:
+    """A brain that is a function, and for which thinking is free."""
+
+    think: Any
+
+    def __call__(self, *given: Any) -> Any:
+        return self.think(*given)
+
+    def spent(self, *given: Any) -> None:
+        return None
+
+
 def thought(motor: Motor, outputs: np.ndarray, action: Action = NUMBERS) -> Thought:
     """Return the thoughts of brains that give these outputs and remember their senses."""
 
     def brain(genome: Any, memory: Any, senses: Any) -> tuple[Any, Any]:
         return memory + senses, jnp.asarray(outputs)
 
-    law = replace(meadow_law(), brain=brain, motor=motor, action=action)
+    law = replace(meadow_law(), brain=Free(brain), motor=motor, action=action)
     memory, senses = np.ones((2, len(outputs), 3), np.float32)
     think = jax.jit(lambda *given: life.think(law, {}, *given))
     return think(memory, senses, key_of(len(outputs)), np.arange(len(outputs)))
@@ -175,7 +188,7 @@ def test_the_motor_of_a_cell_draws_for_its_world_tick_and_place_in_the_world() -
         return memory - 1, 2 * senses
 
     motor = Motor(kind="gaussian", sd=0.5)
-    law = replace(meadow_law(), brain=brain, motor=motor, action=Continuous(2))
+    law = replace(meadow_law(), brain=Free(brain), motor=motor, action=Continuous(2))
     world = a_world(np.ones(12, bool), [0, 0], [0, 0])
     senses = np.arange(24, dtype=np.float32).reshape(12, 2)
     think = jax.jit(partial(tick.think, law))
@@ -224,6 +237,15 @@ def test_a_tick_is_eventful_if_an_organism_dies_or_may_be_born(
         _, found = fates(a_world(alive, [0, 0], [1, 1]), alive, fatal=fatal)
         assert bool(found.eventful) == (dies or bool(cells))
         assert int(found.wants.sum()) == alive.sum() - dies
+
+
+def test_thinking_costs_energy_before_anyone_starves() -> None:
+    """Of three organisms with 3 units, which drain by 1, one spends nothing, one 1.5 units and one 2."""
+    vitals = Vitals(np.full(3, 3 * ONE, np.int32), np.zeros(3, np.int32))
+    none, spent = np.zeros(3, bool), np.array([0, 1.5, 2], np.float32)
+    after, cause = JUDGE(meadow_law(), vitals, none, np.zeros(3), Outcome(fatal=none), RATES, spent)
+    assert after.energy.tolist() == [2 * ONE, ONE // 2, 0]
+    assert cause.tolist() == [-1, -1, Cause.STARVED]
 
 
 def test_a_tick_without_replication_is_quiet_although_cells_are_empty() -> None:

@@ -49,6 +49,14 @@ def check_brain(brain: Brain, senses: int, outputs: int) -> None:
         "does not give what pictures show as arrays of organisms, rows and columns, by name",
     )
 
+    spent = tracing.traced(
+        "spent",
+        lambda *both: brain.spent(both[0], both[1], senses, outputs),
+        *[_floats(length)] * 2,
+    )
+    if spent is not None:
+        tracing.typed("what thinking costs", spent, (COUNT,), jnp.float32)
+
 
 def _is_map(found: object) -> bool:
     shape: tuple[int, ...] = getattr(found, "shape", ())

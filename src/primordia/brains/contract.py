@@ -70,6 +70,13 @@ class Brain(Settings, ABC):
         """
         return {}
 
+    def spent(self, before: Array, after: Array, senses: int, outputs: int) -> Array | None:
+        """Return the energy that a tick of thinking costs, float32 (N,); None: thinking is free.
+
+        `before` and `after` are memories (N, M); `senses` and `outputs` are as in `blocks`.
+        """
+        return None
+
     @abstractmethod
     def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
         """Think for one tick; all arrays are float32.

@@ -66,6 +66,10 @@ class Plastic(Brain):
         20.0, gt=0, le=1e6, description="factor of the change of the senses"
     )
 
+    price: float = Field(
+        0.0, ge=0, le=1e6, description="energy that a change of a fast weight by 1 costs"
+    )
+
     def blocks(self, senses: int, outputs: int) -> dict[str, Shape]:
         """Return `input` (W1), `output` (W2), `modulator` (M), and the coefficients, COEFFICIENTS."""
         output = layer("output", self.hidden, outputs)
@@ -84,6 +88,16 @@ class Plastic(Brain):
     def innate(self) -> "Plastic":
         """Return the brain whose fast weights stay 0."""
         return self.model_copy(update={"bound": 0.0})
+
+    def spent(self, before: Array, after: Array, senses: int, outputs: int) -> Array | None:
+        """Return `price` times the sum of the changes of all fast weights."""
+        if not self.price:
+            return None
+        shape = layer("output", self.hidden, outputs)["output"]
+        was, now = (self._split(memory, senses, shape).fast for memory in (before, after))
+        change = jnp.abs(now - was).reshape(len(now), 1, -1)
+        each = jnp.full((len(now), change.shape[2]), np.float32(self.price))
+        return matvec(change, each)[:, 0]
 
     def pictured(self, memory: Array, senses: int, outputs: int) -> dict[str, Array]:
         """Return the fast weights as shares of the bound, a row for each output; none without a bound."""

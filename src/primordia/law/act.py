@@ -7,10 +7,10 @@ endowment. In Avida and Tierra copying is part of an organism's code; here it is
 from typing import Annotated, Literal, NamedTuple
 
 import jax.numpy as jnp
-import numpy as np
 from jax import Array
 from pydantic import Field
 
+from primordia.brains.layers import gate
 from primordia.law.metabolism import to_fixed_point
 from primordia.random.wide import Wide, signed, total
 from primordia.settings.base import Rate, Settings
@@ -56,8 +56,8 @@ class Act(Settings):
     energy is conserved. An organism that cannot pay both does not try. A try comes before accidents: an
     organism that dies by accident in the tick of its try has paid the price.
 
-    If the endowment is chosen, it is the share (1 + tanh(y / 2)) / 2 of the parent's energy, where y is
-    the brain's last output.
+    If the endowment is chosen, it is the share 1 / (1 + exp(-y)) of the parent's energy, where y is the
+    brain's last output.
     """
 
     kind: Literal["act"] = Field(description="act: organisms copy themselves when they choose to")
@@ -91,9 +91,7 @@ class Act(Settings):
         if isinstance(self.endowment, float):
             endowment = jnp.full_like(energy, to_fixed_point(jnp.float32(self.endowment)))
         else:
-            # A sum followed by products: no compiler can join them into one instruction.
-            share = (jnp.tanh(copying[:, 1] * np.float32(0.5)) + 1) * np.float32(0.5)
-            given = (share * energy.astype(jnp.float32)).astype(jnp.int32)
+            given = (gate(copying[:, 1]) * energy.astype(jnp.float32)).astype(jnp.int32)
             endowment = jnp.minimum(given, most)
         tried = (copying[:, 0] > 0) & (endowment > 0) & (endowment <= most)
         return Tries(tried, jnp.where(tried, price, 0), jnp.where(tried, endowment, 0))

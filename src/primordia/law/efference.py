@@ -37,8 +37,13 @@ class Efferent(Brain):
 
     def pictured(self, memory: Array, senses: int, outputs: int) -> dict[str, Array]:
         """Return what pictures show of the inner memory."""
-        own = memory[:, : -(senses + outputs)]
-        return self.inner.pictured(own, 2 * senses + outputs, outputs)
+        last = senses + self.action.size
+        return self.inner.pictured(memory[:, :-last], senses + last, outputs)
+
+    def spent(self, before: Array, after: Array, senses: int, outputs: int) -> Array | None:
+        """Return the energy that thinking costs the inner brain."""
+        last = senses + self.action.size
+        return self.inner.spent(before[:, :-last], after[:, :-last], senses + last, outputs)
 
     def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
         """Think for one tick; see `Brain`."""

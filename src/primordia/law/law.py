@@ -65,6 +65,11 @@ class Law:
             return {name: self.per_cell(values) for name, values in climate.items()}
         return {name: values[cells // self.cells] for name, values in climate.items()}
 
+    @property
+    def outputs(self) -> int:
+        """The number of a brain's outputs: those of the action, and those that decide about copies."""
+        return self.action.size + (0 if self.act is None else self.act.outputs)
+
     @cached_property
     def rates(self) -> tuple[str, ...]:
         """Dotted names of the settings that seasons may change."""

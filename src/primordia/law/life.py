@@ -15,7 +15,7 @@ from primordia.habitats.bodies import not_finite
 from primordia.habitats.contract import Bodies, Outcome
 from primordia.law.act import Tries
 from primordia.law.law import Law
-from primordia.law.metabolism import Rates, add, food_eaten, metabolise
+from primordia.law.metabolism import Rates, add, food_eaten, metabolise, to_fixed_point
 from primordia.law.motor import chosen
 from primordia.law.world import Cause
 from primordia.mutations.noise import noise_index
@@ -35,6 +35,8 @@ class Thought(NamedTuple):
     """int32 (N,) or float32 (N, K); see `habitats.contract.Action`"""
     faulty: Array
     """bool (N,): an output of the brain is not finite"""
+    spent: Array | None = None
+    """float32 (N,): energy that thinking costs; None: it is free; see `Brain.spent`"""
     copying: Array | None = None
     """float32 (N, `Act.outputs`): outputs that decide about copies; None unless replication is an act"""
 
@@ -59,12 +61,12 @@ def think(
         key: key of each organism's motor in this tick, (N,).
         cell: each organism's cell within its world, int32 (N,).
     """
-    memory, output = law.brain(genome, memory, senses)
-    faulty = (~jnp.isfinite(output)).any(axis=1)
-    copying = None
+    after, output = law.brain(genome, memory, senses)
+    faulty, copying = (~jnp.isfinite(output)).any(axis=1), None
+    spent = law.brain.spent(memory, after, law.senses, law.outputs)
     if law.act is not None:
         output, copying = output[:, : law.action.size], output[:, law.action.size :]
-    return Thought(memory, act(law, key, cell, output), faulty, copying)
+    return Thought(after, act(law, key, cell, output), faulty, spent, copying)
 
 
 def act(law: Law, key: Wide, cell: Array, output: Array) -> Array:
@@ -76,7 +78,13 @@ def act(law: Law, key: Wide, cell: Array, output: Array) -> Array:
 
 
 def judge(
-    law: Law, vitals: Vitals, faulty: Array, bodies: Bodies, outcome: Outcome, rates: Rates
+    law: Law,
+    vitals: Vitals,
+    faulty: Array,
+    bodies: Bodies,
+    outcome: Outcome,
+    rates: Rates,
+    spent: Array | None = None,
 ) -> tuple[Vitals, Array]:
     """Judge a tick in the habitat for N organisms: they eat, spend energy, and may die.
 
@@ -87,6 +95,7 @@ def judge(
         bodies: the bodies after the tick, or the senses if the habitat is on the host.
         outcome: the habitat's outcome, (N,) each.
         rates: settings of the metabolism in each organism's world; not used without a metabolism.
+        spent: `Thought.spent` of the tick.
 
     Returns:
         energy and food after the tick; the cause of death, one of BODILY, or -1: int32 (N,).
@@ -94,6 +103,8 @@ def judge(
     energy, eaten = vitals
     if law.metabolism is not None:
         energy = metabolise(energy, outcome.food, outcome.effort, rates)
+        if spent is not None:
+            energy = add(energy, -to_fixed_point(spent))
     if outcome.food is not None:
         eaten = add(eaten, food_eaten(outcome.food))
     cause = jnp.full(faulty.shape, -1, jnp.int32)

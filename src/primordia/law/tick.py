@@ -83,7 +83,7 @@ def judge(
     organisms, worlds = world
     climate, tries = law.in_cells(worlds.climate), None
     vitals, rates = Vitals(organisms.energy, organisms.eaten), Rates.of(climate)
-    vitals, cause = life.judge(law, vitals, thought.faulty, bodies, outcome, rates)
+    vitals, cause = life.judge(law, vitals, thought.faulty, bodies, outcome, rates, thought.spent)
     if worlds.acts is not None and thought.copying is not None:
         vitals, tries = life.try_to_copy(law, vitals, cause, thought.copying, rates)
         tried = law.by_world(tries.tried & active)

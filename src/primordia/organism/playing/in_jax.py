@@ -129,7 +129,7 @@ def _advance(
     def play(own: tuple, now: tuple[Wide, Array, Array | None]) -> tuple[tuple, tuple]:
         bodies, memory, vitals, alive = own
         tick, counts, action = now
-        senses, faulty = habitat.sense(bodies), jnp.zeros_like(alive)
+        senses, faulty, spent = habitat.sense(bodies), jnp.zeros_like(alive), None
         perceived = law.perceived(senses, vitals.energy)
         met = Thinking(perceived, memory) if watched else None
         if action is None:
@@ -138,9 +138,9 @@ def _advance(
                 seen = jnp.where(frozen.senses, first, perceived)
                 kept = jnp.where(frozen.memory, 0, memory)
             thought = think(law, mind, kept, seen, tick)
-            memory, action, faulty = thought.memory, thought.action, thought.faulty
+            memory, action, faulty, spent, _ = thought
         bodies, outcome = habitat.step(bodies, action)
-        vitals, cause = judge(law, vitals, faulty, bodies, outcome, rates)
+        vitals, cause = judge(law, vitals, faulty, bodies, outcome, rates, spent)
         playing = alive & counts
         lived = playing, action, outcome.food, mark(senses), met
         return (bodies, memory, vitals, alive & ~(playing & (cause >= 0))), lived

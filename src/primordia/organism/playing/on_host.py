@@ -25,7 +25,7 @@ def stretches(
     mind, memory, vitals, words = shared(begun, law, habitat.words)(seated)
     rates, count, frozen = seated.rates, len(words), manner.frozen
     think_tick, judge_tick = shared(think, law), shared(judge, law)
-    alive, faulty = np.ones(count, bool), jnp.zeros(count, bool)
+    alive, faulty, spent = np.ones(count, bool), jnp.zeros(count, bool), None
     habitat.open(count)
     with closing(habitat):
         senses = np.array(habitat.reset(np.arange(count), np.asarray(words)))
@@ -41,12 +41,13 @@ def stretches(
                 seen = perceived if frozen is None else np.where(frozen.senses, first, perceived)
                 kept = memory if frozen is None else np.where(frozen.memory, 0, memory)
                 thought = think_tick(mind, kept, seen, wide([tick]))
-                memory, faulty, action = thought.memory, thought.faulty, np.asarray(thought.action)
+                memory, chosen, faulty, spent, _ = thought
+                action = np.asarray(chosen)
             else:
                 action = manner.script(tick)
             playing, marked = alive, mark(np.ascontiguousarray(senses, np.float32))
             senses, outcome = habitat.step(action, playing)
-            vitals, cause = judge_tick(vitals, faulty, senses, outcome, rates)
+            vitals, cause = judge_tick(vitals, faulty, senses, outcome, rates, spent)
             alive = playing & (np.asarray(cause) < 0)
             food = None if outcome.food is None else np.array(outcome.food)[None]
             yield Stretch(playing[None], action[None].copy(), food, marked[None], alive, met)

@@ -37,7 +37,7 @@ def judged(
     endowment of the child born to it in the tick. It is the recorded one, since births depend on the
     neighbours.
     """
-    vitals, cause = judge(law, now.vitals, thought.faulty, bodies, outcome, rates)
+    vitals, cause = judge(law, now.vitals, thought.faulty, bodies, outcome, rates, thought.spent)
     if thought.copying is not None:
         vitals, _ = try_to_copy(law, vitals, cause, thought.copying, rates)
         vitals = vitals._replace(energy=vitals.energy - given)
