@@ -1,6 +1,6 @@
 """What do parents give to their children, beside what theory says?
 
-    python experiments/endowments.py founders experiments/investment/theory.toml
+    python experiments/endowments.py founders experiments/investment/nursery.toml
     python experiments/endowments.py experiments/investment/theory.toml
 
 The first command writes the founders' genomes. The second one needs the experiment to have been run
@@ -18,15 +18,12 @@ from typing import Any
 import jax.numpy as jnp
 import named
 import numpy as np
-from games import write_rows
+from by_world import measure
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
-import primordia
 from primordia import config
 from primordia.brains import genomes
-from primordia.comparison.tables import spread_text
-from primordia.experiments.results import table
 from primordia.history import pedigree
 from primordia.law.metabolism import ONE
 from primordia.runs.records import Records
@@ -39,10 +36,8 @@ Floats = NDArray[np.float64]
 
 
 def write_founders(file: Path) -> None:
-    """Write a genome for each of FOUNDERS beside the experiment's file."""
-    values = config.values_of(str(file))
-    own = {name: value for name, value in values.items() if name not in ("question", "arms")}
-    settings = config.validated(own, str(file))
+    """Write a genome for each of FOUNDERS beside the task's file."""
+    settings = config.load(str(file))
     layout, store = settings.build_layout(settings.build_habitat()), settings.metabolism.store
     for name, (energy, share) in FOUNDERS.items():
         weights = np.zeros((1, 4, 2), np.float32)
@@ -54,13 +49,16 @@ def write_founders(file: Path) -> None:
         genomes.write(path, layout, genome.reshape(1, -1), {"copies above": str(energy)})
 
 
+NOTE = (
+    "In units of energy. Late births: the last quarter of a world's births. `would give`: what an"
+    f" organism gives at the least energy at which it copies itself, median of {ORGANISMS} late-born; its"
+    " shadow has the same pedigree without selection."
+)
+
+
 def report(file: Path) -> None:
-    """Compare the endowments of late births in all arms with theory, and write the table."""
-    rows: list[dict[str, Any]] = []
-    for folder in named.arms(file):
-        rows += [{"arm": folder.name, **row} for row in worlds_of(primordia.load(folder).opened())]
-        print(f"{folder.name} is done", flush=True)
-    write_rows(file.parent / "results" / f"{file.stem}-endowments", rows, summary(rows))
+    """Measure all arms of an experiment, and write the table."""
+    measure(file, "endowments", worlds_of, NOTE)
 
 
 def optimum(run: Records) -> float:
@@ -78,8 +76,8 @@ def optimum(run: Records) -> float:
 def worlds_of(run: Records) -> list[dict[str, Any]]:
     """Return a row for each world."""
     lives, best = run.lives, optimum(run)
-    given, late = run.endowments_of(lives) / ONE, lives.late(LATE) & (lives.parent >= 0)
-    rows = []
+    given, child = run.endowments_of(lives) / ONE, lives.parent >= 0
+    late, rows = lives.late(LATE) & child, []
     for world in range(run.config.seeds):
         own = np.flatnonzero(late & (lives.world == world))
         some = own[:: max(1, len(own) // ORGANISMS)][:ORGANISMS]
@@ -89,7 +87,7 @@ def worlds_of(run: Records) -> list[dict[str, Any]]:
                 "seed": int(run.world_seeds[world]),
                 "theory": round(best, 2),
                 "first births": round(
-                    float(given[lives.world == world][: 2 * 1024][1024:].mean()), 2
+                    float(given[child & (lives.world == world)][:1000].mean()), 2
                 ),
                 "late births": round(float(given[own].mean()), 2),
                 "late / theory": round(float(given[own].mean()) / best, 3),
@@ -115,22 +113,6 @@ def first_gift(run: Records, rows: np.ndarray, redrawn: bool) -> Floats:
         tries = act.tries(outputs, whole, jnp.float32(act.price))
         found = np.where(tries.tried, np.asarray(tries.endowment) / ONE, found)
     return found
-
-
-def summary(rows: list[dict[str, Any]]) -> str:
-    """Return a table of medians and quartiles over worlds."""
-    lines, columns = [], list(rows[0])[2:]
-    for arm in dict.fromkeys(row["arm"] for row in rows):
-        worlds = [row for row in rows if row["arm"] == arm]
-        lines.append(
-            [arm, len(worlds), *(spread_text([row[name] for row in worlds]) for name in columns)]
-        )
-    note = (
-        "Medians over worlds (quartiles), in units of energy. Late births: the last quarter of a world's"
-        " births. `would give`: what an organism gives at the least energy at which it copies itself,"
-        f" median of {ORGANISMS} late-born; its shadow has the same pedigree without selection."
-    )
-    return f"{table(['arm', 'worlds', *columns], lines)}\n\n{note}"
 
 
 if __name__ == "__main__":

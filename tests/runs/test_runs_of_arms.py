@@ -81,7 +81,8 @@ def test_runs_of_an_arm_begin_with_the_same_genomes(same: bool, tmp_path: Path) 
     runs = []
     for seed, content in enumerate([b"1", b"1", b"1" if same else b"2"]):
         runs.append(run_of(tmp_path / str(seed), {}, {}, seed))
-        runs[-1].config = runs[-1].config.model_copy(update={"ancestors": (FOUNDERS,)})
+        own = (str(runs[-1].path / FOUNDERS),)
+        runs[-1].config = runs[-1].config.model_copy(update={"ancestors": own})
         runs[-1].path.mkdir()
         (runs[-1].path / FOUNDERS).write_bytes(content)
     if same:

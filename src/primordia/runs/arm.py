@@ -57,8 +57,11 @@ def _refuse_others(runs: Sequence[Records]) -> None:
 
 
 def _settings(run: Records) -> dict[str, Any]:
-    """Return the settings that must be equal, by dotted name."""
-    ignored: Any = {**dict.fromkeys(OWN, True), "fork": {"run"}}
+    """Return the settings that must be equal, by dotted name.
+
+    Each run has the genomes of its ancestors in a file of its own; `_refuse_others` compares the content.
+    """
+    ignored: Any = {**dict.fromkeys((*OWN, "ancestors"), True), "fork": {"run"}}
     return flat(run.config.model_dump(mode="json", exclude=ignored))
 
 

@@ -1,0 +1,89 @@
+"""How much do late-born organisms learn, beside their neutral shadows?
+
+    python experiments/plasticity.py experiments/learning/price.toml
+
+The experiment must have been run (`primordia experiment`). Learning is the sum of the changes of all fast
+weights in a tick, in a fresh game of at most TICKS ticks: the mean over the game's ticks. The neutral
+shadow of an organism has its pedigree, and as many mutations, but no selection. The table goes to
+`results/` beside the file, as Markdown and CSV.
+"""
+
+from pathlib import Path
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import named
+import numpy as np
+from by_world import measure
+
+from primordia.history import pedigree
+from primordia.history.climate import PastClimate
+from primordia.law.metabolism import Rates
+from primordia.organism.playing.games import Players, stretches
+from primordia.organism.playing.seats import Manner
+from primordia.random.keys import Purpose, stream
+from primordia.random.wide import wide
+from primordia.runs.records import Records
+
+LATE, ORGANISMS, TICKS = 0.75, 50, 256
+
+
+NOTE = (
+    f"Learning: changes of all fast weights in a tick, in a fresh game of at most {TICKS} ticks; median"
+    f" of {ORGANISMS} organisms of the last quarter of the births, and of their neutral shadows."
+)
+
+
+def report(file: Path) -> None:
+    """Measure all arms of an experiment, and write the table."""
+    measure(file, "plasticity", worlds_of, NOTE)
+
+
+def worlds_of(run: Records) -> list[dict[str, Any]]:
+    """Return a row for each world."""
+    lives, rows = run.lives, []
+    late = lives.late(LATE) & (lives.parent >= 0)
+    for world in range(run.config.seeds):
+        own = np.flatnonzero(late & (lives.world == world))
+        some = own[:: max(1, len(own) // ORGANISMS)][:ORGANISMS]
+        (learns, lived), (drifts, _) = (learning(run, some, redrawn) for redrawn in (False, True))
+        rows.append(
+            {
+                "seed": int(run.world_seeds[world]),
+                "late-born": len(own),
+                "ticks lived": round(float(lived.mean()), 1),
+                "learning": round(float(np.median(learns)), 3),
+                "shadows' learning": round(float(np.median(drifts)), 3),
+                "learning / shadows'": round(float(np.median(learns) / np.median(drifts)), 3),
+            }
+        )
+    return rows
+
+
+def learning(run: Records, rows: np.ndarray, redrawn: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Return the changes of fast weights in a tick, and the ticks lived: float64 (K,) each."""
+    lives, law = run.lives.take(rows), run.law
+    keys = stream(wide(run.world_seeds[lives.world]), Purpose.REBIRTH, wide(lives.id))
+    rates = Rates.of(jax.tree.map(jnp.asarray, PastClimate(run).of_lives(lives, lives.born)))
+    genomes = pedigree.genomes(run, rows, redrawn)
+    players = Players(law, run.config.build_habitat(), genomes, keys, rates)
+    priced = law.brain.model_copy(update={"price": 1.0})
+    total, ticks, last = np.zeros(len(rows)), np.zeros(len(rows)), None
+    for part in stretches(players, 1, Manner(TICKS, watched=True)):
+        assert part.met is not None
+        for playing, memory in zip(part.playing, np.asarray(part.met.memory), strict=True):
+            if last is not None:
+                spent = priced.spent(
+                    jnp.asarray(last), jnp.asarray(memory), law.senses, law.outputs
+                )
+                total += np.where(playing, np.asarray(spent), 0)
+                ticks += playing
+            last = memory
+        if not part.alive.any():
+            break
+    return total / np.maximum(ticks, 1), ticks + 1
+
+
+if __name__ == "__main__":
+    named.for_each_named(report, __doc__)
