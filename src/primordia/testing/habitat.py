@@ -5,7 +5,7 @@ import numpy as np
 from jax import Array, lax
 
 from primordia.compiled import jit
-from primordia.habitats.checks import check_arrays, check_properties
+from primordia.habitats.checks import check_arrays, check_parameters, check_properties
 from primordia.habitats.contract import (
     Ability,
     AnyHabitat,
@@ -63,6 +63,7 @@ def _stated(habitat: AnyHabitat) -> None:
     """Check the habitat's properties and, in JAX, its shapes and dtypes."""
     with kept():
         check_properties(habitat)
+        check_parameters(habitat)
         if isinstance(habitat, JaxHabitat):
             check_arrays(habitat)
     _abilities(habitat)
