@@ -7,6 +7,7 @@ import gymnasium
 import jax
 import numpy as np
 import pytest
+from jax import Array
 
 from primordia.compiled import shared
 from primordia.config import load
@@ -266,6 +267,20 @@ def test_a_habitat_that_names_parameters_must_scale_them(kind: type[Any], says: 
     with pytest.raises(InputError) as error:
         load("CartPole-survival", {"habitat": own})
     assert says in str(error.value)
+
+
+class Swayed(Mill):
+    """A mill that turns by the mean of all factors."""
+
+    parameters: Any = ("weight",)
+
+    def step_scaled(self, bodies: Array, action: Array, factors: Array) -> tuple[Array, Outcome]:
+        return self.step(bodies, action * factors.mean())
+
+
+def test_a_step_with_factors_is_checked_like_a_step() -> None:
+    with pytest.raises(ContractError, match="among 1 bodies than among"):
+        check_habitat(Swayed())
 
 
 def test_habitats_say_whether_they_can_scale() -> None:
