@@ -102,7 +102,7 @@ def built(name: str, **options: Any) -> Any:
 
 def test_the_abilities_of_a_habitat_follow_from_its_methods() -> None:
     able = {
-        CartPole(): {Ability.PICTURE, Ability.SAVE},
+        CartPole(): {Ability.PICTURE, Ability.SAVE, Ability.SCALE},
         Meadow(): {Ability.SAVE},
         HostCartPole(): {Ability.SAVE},
         Nameless(): {Ability.SAVE},  # whose methods are those of its base class

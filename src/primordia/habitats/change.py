@@ -9,16 +9,24 @@ from typing import Annotated, Any, Literal, Self, TypeAlias
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
-from pydantic import Field, TypeAdapter, ValidationError, model_validator
+from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError, model_validator
 
 from primordia.errors import InputError
+from primordia.habitats.checks import check_parameters
 from primordia.habitats.contract import Action, AnyHabitat, Compound, Continuous
 from primordia.random.keys import below, bits, chance
 from primordia.random.wide import Wide
 from primordia.settings.base import Settings
 from primordia.settings.fields import first_fault
+from primordia.settings.tables import did_you_mean
+
+
+def _listed(value: Any) -> Any:
+    return (value,) if isinstance(value, str) else value
+
 
 Ticks = Annotated[int, Field(ge=1, lt=2**31)]
+Factor = Annotated[float, Field(gt=0)]
 Numbers = Annotated[
     tuple[Annotated[int, Field(ge=0)], ...],
     Field((), strict=False, description="numbers of those that change, from 0; []: all"),
@@ -80,6 +88,10 @@ class Change(Settings):
         """Return what the organisms perceive of these senses, float32 (N, S)."""
         return senses
 
+    def scale(self, names: tuple[str, ...], state: Array, factors: Array) -> Array:
+        """Return the factors, float32 (N, P), of the habitat's parameters with these names."""
+        return factors
+
 
 class ReverseActions(Change):
     """Choices are counted from the last one, or amounts have the other sign; then as at birth again."""
@@ -138,8 +150,7 @@ class Weaken(Change):
         """Raise ValueError if the actions are not amounts, or there are fewer."""
         if not isinstance(habitat.action, Continuous):
             raise ValueError("the actions of this habitat are not amounts")
-        if self.range[0] > self.range[1]:
-            raise ValueError("range: the least factor is above the largest")
+        _need_order(self.range)
         _need(self.of, habitat.action.size)
 
     def first(self, kind: Action, count: int) -> Array:
@@ -172,8 +183,47 @@ class InvertSenses(Change):
         return jnp.where(inverted, -senses, senses)
 
 
+class Parameter(Change):
+    """Physical parameters of the habitat are those at birth times a new random factor."""
+
+    kind: Literal["parameter"] = Field(description="physical parameters times a random factor")
+    of: Annotated[tuple[str, ...], BeforeValidator(_listed)] = Field(
+        min_length=1,
+        strict=False,
+        description="name of the one that changes, or a list of those that change by the same factor",
+    )
+    range: tuple[Factor, Factor] = Field(strict=False, description="least and largest factor")
+
+    def check(self, habitat: AnyHabitat) -> None:
+        """Raise ValueError if the habitat does not offer these parameters."""
+        check_parameters(habitat)
+        if not habitat.parameters:
+            raise ValueError(
+                "this habitat has no physical parameters that can change; choose another kind of"
+                " change, such as invert-senses"
+            )
+        _need_order(self.range)
+        for name in self.of:
+            if name not in habitat.parameters:
+                known = ", ".join(habitat.parameters)
+                near = did_you_mean(name, list(habitat.parameters))
+                raise ValueError(f"of: there is no parameter {name!r}{near}; known: {known}")
+
+    def first(self, kind: Action, count: int) -> Array:
+        """Return the factors at birth, float32 (N,)."""
+        return jnp.ones(count, jnp.float32)
+
+    def next(self, state: Array, key: Wide, age: Array, draw: int) -> Array:
+        """Return new factors."""
+        return _uniform(word_of(key, age, draw), *self.range)
+
+    def scale(self, names: tuple[str, ...], state: Array, factors: Array) -> Array:
+        """Return the factors, times those of `state`, (N,), for the parameters that change."""
+        return jnp.where(np.isin(names, self.of), factors * state[:, None], factors)
+
+
 Kind: TypeAlias = Annotated[
-    ReverseActions | PermuteActions | Weaken | InvertSenses, Field(discriminator="kind")
+    ReverseActions | PermuteActions | Weaken | InvertSenses | Parameter, Field(discriminator="kind")
 ]
 
 
@@ -203,6 +253,11 @@ def _chosen(of: tuple[int, ...], size: int) -> np.ndarray:
 def _need(of: tuple[int, ...], size: int) -> None:
     if max(of, default=0) >= size:
         raise ValueError(f"of: there is no number {max(of)}; the last is {size - 1}")
+
+
+def _need_order(range: tuple[float, float]) -> None:
+    if range[0] > range[1]:
+        raise ValueError("range: the least factor is above the largest")
 
 
 def _need_one_part(habitat: AnyHabitat) -> None:

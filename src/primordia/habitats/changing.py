@@ -9,7 +9,7 @@ from jax import Array, lax
 
 from primordia.compiled import shared
 from primordia.habitats.bodies import select_bodies
-from primordia.habitats.change import Kind, word_of
+from primordia.habitats.change import Kind, Parameter, word_of
 from primordia.habitats.contract import (
     Ability,
     Action,
@@ -94,6 +94,14 @@ def sense(changes: tuple[Kind, ...], course: Course, senses: Array) -> Array:
     return senses
 
 
+def factors_of(changes: tuple[Kind, ...], names: tuple[str, ...], course: Course) -> Array:
+    """Return the factors of the habitat's parameters with these names, float32 (N, P)."""
+    factors = jnp.ones((len(course.age), len(names)), jnp.float32)
+    for change, state in zip(changes, course.state, strict=True):
+        factors = change.scale(names, state, factors)
+    return factors
+
+
 class _Wrapper:
     """What a habitat that changes has in common with the habitat that it wraps."""
 
@@ -103,6 +111,8 @@ class _Wrapper:
         self.words = inner.words + WORDS
         self.versions, self.rate, self.episode = inner.versions, inner.rate, inner.episode
         self.tallies, self.exact = inner.tallies, inner.exact
+        scales = any(isinstance(change, Parameter) for change in changes)
+        self.scaled = inner.parameters if scales else ()
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, _Wrapper) and self._key == other._key
@@ -132,10 +142,17 @@ class _Wrapper:
         return self.inner.picture(body.inner, done)
 
     def caption(self, body: Changed, action: np.ndarray) -> str:
-        """Return the wrapped habitat's caption of the choice, and the number of changes so far."""
+        """Return the wrapped habitat's caption, how often the world changed, and the factors now."""
         count = int(np.sum(body.course.times))
-        changes = f"{count} change{'' if count == 1 else 's'}"
-        return f"{self.inner.caption(body.inner, action)}, {changes}"
+        parts = [
+            self.inner.caption(body.inner, action),
+            f"{count} change{'' if count == 1 else 's'}",
+        ]
+        course = jax.tree.map(lambda leaf: leaf[None], body.course)
+        factors = np.asarray(factors_of(self.changes, self.scaled, course))[0]
+        named = zip(self.scaled, factors, strict=True)
+        parts += [f"{name} x {factor:.2f}" for name, factor in named if factor != 1]
+        return ", ".join(parts)
 
 
 class ChangingInJax(_Wrapper, JaxHabitat):
@@ -155,7 +172,11 @@ class ChangingInJax(_Wrapper, JaxHabitat):
     def step(self, bodies: Changed, action: Array) -> tuple[Changed, Outcome]:
         """Step all bodies by one tick; see `JaxHabitat.step`."""
         done = act(self.changes, self.action, bodies.course, action)
-        inner, outcome = self.inner.step(bodies.inner, done)
+        if self.scaled:
+            factors = factors_of(self.changes, self.scaled, bodies.course)
+            inner, outcome = self.inner.step_scaled(bodies.inner, done, factors)
+        else:
+            inner, outcome = self.inner.step(bodies.inner, done)
         return Changed(inner, advance(self.changes, bodies.course)), outcome
 
 
@@ -169,23 +190,36 @@ class ChangingOnHost(_Wrapper, HostHabitat):
         self.inner.open(cells, watched)
         self._begin, self._act = (shared(each, self.changes, self.action) for each in (begin, act))
         self._sense, self._after = (shared(each, self.changes) for each in (sense, _after))
+        self._factors_of = shared(factors_of, self.changes, self.scaled)
         self._course = self._begin(np.zeros((cells, WORDS), np.uint32))
+        self._factors = np.ones((cells, len(self.scaled)), np.float32)
 
     def reset(self, cells: np.ndarray, words: np.ndarray) -> np.ndarray:
         """Make fresh bodies in cells (K,); see `HostHabitat.reset`."""
-        senses = self.inner.reset(cells, words[:, :-WORDS])
         everywhere = np.zeros((len(self._course.age), WORDS), np.uint32)
         everywhere[cells] = words[:, -WORDS:]  # one shape is compiled once
         newborn = jnp.isin(jnp.arange(len(everywhere)), cells)
         self._course = select_bodies(newborn, self._begin(everywhere), self._course)
-        return senses  # nothing has changed yet
+        self._scale()  # the last body of a cell may have left other factors
+        return self.inner.reset(cells, words[:, :-WORDS])  # nothing has changed yet
 
     def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
         """Step the bodies of living cells; see `HostHabitat.step`."""
         done = np.asarray(self._act(self._course, action))
         senses, outcome = self.inner.step(done, alive)
         self._course, senses = self._after(self._course, alive, senses)
+        self._scale()
         return np.array(senses), outcome
+
+    def _scale(self) -> None:
+        """Tell the wrapped habitat the factors of the bodies for which they are new."""
+        if not self.scaled:
+            return
+        factors = np.asarray(self._factors_of(self._course))
+        cells = np.flatnonzero((factors != self._factors).any(axis=1))
+        if len(cells):
+            self.inner.set_factors(cells, factors[cells])
+        self._factors = factors
 
     def close(self) -> None:
         """Release what `open` allocated."""
@@ -213,6 +247,7 @@ class ChangingOnHost(_Wrapper, HostHabitat):
         own = jax.tree.leaves(self._course)
         leaves = [jnp.asarray(arrays[f"{COURSE}{i}"]) for i in range(len(own))]
         self._course = jax.tree.unflatten(jax.tree.structure(self._course), leaves)
+        self._scale()
         self.inner.load(
             {name: each for name, each in arrays.items() if not name.startswith(COURSE)}
         )

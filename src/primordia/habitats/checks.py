@@ -74,6 +74,24 @@ def _check_options(tracing: Tracing, habitat: AnyHabitat) -> None:
     )
 
 
+def check_parameters(habitat: AnyHabitat) -> None:
+    """Check the physical parameters that a habitat offers for changes within a life.
+
+    Raises:
+        InputError: they are not a tuple of names, or the habitat cannot scale them.
+    """
+    tracing, parameters = Tracing("habitat", habitat), habitat.parameters
+    tracing.need(
+        isinstance(parameters, tuple) and all(isinstance(each, str) for each in parameters),
+        f"has parameters = {parameters!r}; it must be a tuple of names",
+    )
+    needed = ", ".join(habitat.abilities[Ability.SCALE])
+    tracing.need(
+        not parameters or habitat.can(Ability.SCALE),
+        f"has parameters that may change, so it must define {needed}()",
+    )
+
+
 def _is_action(action: object) -> bool:
     return (
         isinstance(action, Discrete | Continuous | Compound)

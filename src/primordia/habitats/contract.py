@@ -113,6 +113,8 @@ class Ability(StrEnum):
     """keep counts that only people read, such as a score; the law never sees these counts"""
     SAVE = "save"
     """save bodies, so that they go on exactly"""
+    SCALE = "scale"
+    """multiply physical parameters of each body by factors, for changes within a life"""
 
 
 if not TYPE_CHECKING:
@@ -180,6 +182,14 @@ class Habitat(ABC):
         return ()
 
     @default
+    def parameters(self) -> tuple[str, ...]:
+        """Return the names of the P physical parameters, such as gravity, that may change within a life.
+
+        Each body has a factor for each of them. A habitat that names some must be able to SCALE.
+        """
+        return ()
+
+    @default
     def exact(self) -> bool:
         """Return whether lives go on bit for bit from a checkpoint."""
         return self.can(Ability.SAVE)
@@ -190,7 +200,7 @@ class Habitat(ABC):
 
     def lacks(self, ability: Ability) -> list[str]:
         """Return the methods that the class lacks for an ability."""
-        own, defaults = type(self), HostHabitat
+        own, defaults = type(self), JaxHabitat if isinstance(self, JaxHabitat) else HostHabitat
         needed = self.abilities[ability]
         return [name for name in needed if getattr(own, name) is getattr(defaults, name)]
 
@@ -231,7 +241,11 @@ class JaxHabitat(Habitat):
     """
 
     kind: ClassVar[Literal["jax"]] = "jax"
-    abilities: ClassVar = {Ability.PICTURE: ("picture",), Ability.SAVE: ()}
+    abilities: ClassVar = {
+        Ability.PICTURE: ("picture",),
+        Ability.SAVE: (),
+        Ability.SCALE: ("step_scaled",),
+    }
 
     @abstractmethod
     def reset(self, words: "Array") -> Bodies:
@@ -245,6 +259,12 @@ class JaxHabitat(Habitat):
     def step(self, bodies: Bodies, action: "Array") -> tuple[Bodies, Outcome]:
         """Step all bodies by one tick. The results of a cell without an organism are not used."""
 
+    def step_scaled(
+        self, bodies: Bodies, action: "Array", factors: "Array"
+    ) -> tuple[Bodies, Outcome]:
+        """Step bodies whose `parameters` are multiplied by factors, float32 (N, P), in this tick."""
+        raise NotImplementedError
+
 
 class HostHabitat(Habitat):
     """A habitat on the host, which owns its bodies; the engine steps it between two halves of the law."""
@@ -254,6 +274,7 @@ class HostHabitat(Habitat):
         Ability.PICTURE: ("picture", "seen"),
         Ability.TALLY: ("tally",),
         Ability.SAVE: ("save", "load"),
+        Ability.SCALE: ("set_factors",),
     }
 
     @abstractmethod
@@ -277,6 +298,13 @@ class HostHabitat(Habitat):
     def seen(self) -> Bodies:
         """Return the bodies for `picture` and `caption`; the next tick may overwrite them."""
         return None
+
+    def set_factors(self, cells: np.ndarray, factors: np.ndarray) -> None:
+        """Multiply the `parameters` of the bodies in cells (K,) by factors, float32 (K, P), from now on.
+
+        The factors are 1 when the habitat is opened. `reset` and `load` leave them unchanged.
+        """
+        raise NotImplementedError
 
     def tally(self) -> np.ndarray:
         """Return the counts of the present lives, int32 (N, K); `save` stores them as `tally`."""

@@ -5,7 +5,9 @@ import numpy as np
 from jax import Array, lax
 
 from primordia.compiled import jit
-from primordia.habitats.checks import check_arrays, check_properties
+from primordia.habitats.change import changes_of
+from primordia.habitats.changing import changing
+from primordia.habitats.checks import check_arrays, check_parameters, check_properties
 from primordia.habitats.contract import (
     Ability,
     AnyHabitat,
@@ -17,9 +19,14 @@ from primordia.law.events import DEATHS
 from primordia.testing.lives import TICKS, Lives, Past
 from primordia.testing.report import ALL, COUNTS, SUMMED, advise, kept, need
 
+FACTORS = {"range": [0.8, 1.25], "every": [2, 9]}
+"""Factors of a habitat's parameters, and ticks between two draws of a body."""
+
 
 def check_habitat(habitat: AnyHabitat) -> None:
     """Check types, purity, exact lives, saving and pictures of a habitat.
+
+    A habitat with `parameters` is checked again while they change.
 
     Args:
         habitat: the habitat with its settings; a habitat on the host must not be open. The habitat
@@ -57,12 +64,16 @@ def check_habitat(habitat: AnyHabitat) -> None:
             lives.compare(expected, lives.restored(rows), says)
     if habitat.can(Ability.PICTURE):
         lives.drawn()
+    if habitat.parameters:
+        change = {"kind": "parameter", "of": habitat.parameters, **FACTORS}
+        check_habitat(changing(habitat, changes_of([change], habitat)))
 
 
 def _stated(habitat: AnyHabitat) -> None:
     """Check the habitat's properties and, in JAX, its shapes and dtypes."""
     with kept():
         check_properties(habitat)
+        check_parameters(habitat)
         if isinstance(habitat, JaxHabitat):
             check_arrays(habitat)
     _abilities(habitat)

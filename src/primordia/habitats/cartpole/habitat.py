@@ -11,7 +11,7 @@ import numpy as np
 from jax import Array
 from pydantic import Field
 
-from primordia.habitats.cartpole.simulator import TAU, advance
+from primordia.habitats.cartpole.simulator import STANDARD, TAU, Physics, advance
 from primordia.habitats.contract import Discrete, JaxHabitat, Outcome
 from primordia.settings.base import Settings
 
@@ -32,6 +32,8 @@ class CartPole(JaxHabitat, Settings):
     action: ClassVar = Discrete(2)
     words: ClassVar = len(COORDINATES)
     rate: ClassVar = 1 / TAU
+    parameters: ClassVar = ("gravity", "pole-length", "pole-mass", "cart-mass", "force")
+    """in the order of `Physics`"""
 
     senses: tuple[Coordinate, ...] = Field(
         COORDINATES,
@@ -76,7 +78,15 @@ class CartPole(JaxHabitat, Settings):
 
     def step(self, bodies: Array, action: Array) -> tuple[Array, Outcome]:
         """Step bodies (N, 4) by actions int32 (N,) for one tick of 0.02 s."""
+        return self._step(bodies, action, STANDARD)
+
+    def step_scaled(self, bodies: Array, action: Array, factors: Array) -> tuple[Array, Outcome]:
+        """Step bodies whose `parameters` are multiplied by factors (N, 5)."""
+        scaled = (value * factors[:, i] for i, value in enumerate(STANDARD))
+        return self._step(bodies, action, Physics(*scaled))
+
+    def _step(self, bodies: Array, action: Array, physics: Physics) -> tuple[Array, Outcome]:
         x, x_dot, theta, theta_dot = (bodies[:, i] for i in range(len(COORDINATES)))
-        x, x_dot, theta, theta_dot = advance(x, x_dot, theta, theta_dot, action)
+        x, x_dot, theta, theta_dot = advance(x, x_dot, theta, theta_dot, action, physics)
         fatal = (jnp.abs(theta) > math.radians(self.angle_limit)) | (jnp.abs(x) > self.track_limit)
         return jnp.stack([x, x_dot, theta, theta_dot], axis=-1), Outcome(fatal)

@@ -146,31 +146,68 @@ class Gymnax(JaxHabitat, Settings):
 
     def step(self, bodies: Body, action: Array) -> tuple[Body, Outcome]:
         """Step bodies by one tick."""
-        bodies, values = self.tick(bodies, action)
-        count, condition, amount = len(action), self._fatal_condition, self._food_amount
+        return self._judged(*self.tick(bodies, action))
+
+    def step_scaled(self, bodies: Body, action: Array, factors: Array) -> tuple[Body, Outcome]:
+        """Step bodies whose `parameters` are multiplied by factors (N, P)."""
+        return self._judged(*self.tick(bodies, action, factors))
+
+    def _judged(self, bodies: Body, values: dict[str, Any]) -> tuple[Body, Outcome]:
+        """Return bodies after a tick, and the outcome, from the values of all names."""
+        count, condition, amount = len(values["done"]), self._fatal_condition, self._food_amount
         fatal = condition.of_all(values, count, bool) if condition else jnp.zeros(count, bool)
         food = amount.of_all(values, count, np.float32) if amount else None
         return bodies, Outcome(fatal, food)
 
-    def tick(self, bodies: Body, action: Array) -> tuple[Body, dict[str, Any]]:
-        """Return bodies after a tick, and all quantities that expressions can name."""
+    def tick(
+        self, bodies: Body, action: Array, factors: Array | None = None
+    ) -> tuple[Body, dict[str, Any]]:
+        """Return bodies after a tick, and all quantities that expressions can name.
+
+        `factors` (N, P) are those of the `parameters`; None: all are 1.
+        """
         one = Wide(jnp.uint32(0), jnp.uint32(1))
         age = bodies.age + one if self._draws else bodies.age
         key = _key(bodies.root, age)
-        packed, values = self._mapped(self._tick, key, bodies.packed, action)
+        scaled = () if factors is None else (factors,)
+        packed, values = self._mapped(self._tick, key, bodies.packed, action, *scaled)
         return Body(packed, bodies.root, age), values
 
     @cached_property
     def _draws(self) -> bool:
         """Whether a tick draws random numbers."""
+        with simulator.traced():
+            return uses_first(self._tick, simulator.KEY, *self._shapes)
+
+    @cached_property
+    def parameters(self) -> tuple[str, ...]:
+        """Parameters of the environment that may change within a life: the amounts that a tick uses."""
+        return tuple(name for name in self.simulator.amounts if self._uses(name))
+
+    def _uses(self, name: str) -> bool:
+        """Return whether a tick uses a parameter, which may be another for each body."""
+
+        def tick(value: Array, *arguments: Any) -> Any:
+            return self._tick_with({name: value}, *arguments)
+
+        shape = jnp.shape(self.simulator.amounts[name])
+        value = jax.ShapeDtypeStruct(shape, jnp.float32)
+        try:
+            with simulator.traced():
+                return uses_first(tick, value, simulator.KEY, *self._shapes)
+        except TypeError:  # the environment needs a number that is known when it is compiled
+            return False
+
+    @cached_property
+    def _shapes(self) -> tuple[Any, Any]:
+        """Shapes and types of one body's packed senses and state, and of an output of its brain."""
         kind = self.action
         shape, dtype = (
             ((), jnp.int32) if isinstance(kind, Discrete) else ((kind.size,), jnp.float32)
         )
-        output = jax.ShapeDtypeStruct(shape, dtype)
         with simulator.traced():
             packed = jax.eval_shape(self._birth, simulator.KEY)
-            return uses_first(self._tick, simulator.KEY, packed, output)
+        return packed, jax.ShapeDtypeStruct(shape, dtype)
 
     def _mapped(self, function: Callable, *arguments: Any) -> Any:
         """Map a function of one body, with each sum in an order of its own."""
@@ -182,10 +219,21 @@ class Gymnax(JaxHabitat, Settings):
         observation, state = self.simulator.reset(key)
         return pack(self.senses.of(observation), state)
 
-    def _tick(self, key: Array, packed: Packed, output: Array) -> tuple[Packed, dict[str, Any]]:
+    def _tick(
+        self, key: Array, packed: Packed, output: Array, factors: Array | None = None
+    ) -> tuple[Packed, dict[str, Any]]:
         """Return one body's senses and state after a tick, and the values of all names."""
+        values = self.simulator.amounts
+        scaled = {} if factors is None else dict(zip(self.parameters, factors, strict=True))
+        amounts = {name: values[name] * factor for name, factor in scaled.items()}
+        return self._tick_with(amounts, key, packed, output)
+
+    def _tick_with(
+        self, amounts: dict[str, Array], key: Array, packed: Packed, output: Array
+    ) -> tuple[Packed, dict[str, Any]]:
+        """Return the same as `_tick`, with other values of some parameters."""
         state = packed.state(self.senses_size, self.simulator.example.state)
-        stepped = self.simulator.step(key, state, self._actions.of(output))
+        stepped = self.simulator.step(key, state, self._actions.of(output), amounts)
         return pack(self.senses.of(stepped.observation), stepped.state), _values(stepped)
 
 

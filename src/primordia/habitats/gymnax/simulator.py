@@ -8,7 +8,7 @@ import dataclasses
 import json
 import re
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import is_dataclass
 from functools import cached_property, lru_cache
@@ -74,11 +74,34 @@ class Simulator:
         observation, state = self.env.reset_env(key, self.params)
         return observation, self._typed(state)
 
-    def step(self, key: Array, state: Any, action: Array) -> Step:
-        """Return the result of a tick for a key uint32 (2,) and an action of the environment's space."""
-        observation, state, reward, done, info = self._step(key, state, action)
+    @property
+    def amounts(self) -> dict[str, Any]:
+        """The parameters that are floats or arrays of floats, except time limits."""
+        fields = dataclasses.fields(self.params) if is_dataclass(self.params) else ()
+        values = {each.name: getattr(self.params, each.name) for each in fields}
+        return {
+            name: value
+            for name, value in values.items()
+            if isinstance(value, float | np.ndarray | jax.Array)
+            and jnp.issubdtype(jnp.result_type(value), jnp.floating)
+            and name not in TIME_LIMITS
+        }
+
+    def step(
+        self, key: Array, state: Any, action: Array, amounts: Mapping[str, Array] | None = None
+    ) -> Step:
+        """Return the result of a tick for a key uint32 (2,) and an action of the environment's space.
+
+        Args:
+            key: uint32 (2,).
+            state: the state before the tick.
+            action: an action of the environment's space.
+            amounts: other values of some parameters in this tick, by name.
+        """
+        params = dataclasses.replace(self.params, **amounts) if amounts else self.params
+        observation, state, reward, done, info = self._step(key, state, action, params)
         if self._truncates:
-            done = jnp.asarray(done) | self.env.is_truncated(state, self.params)
+            done = jnp.asarray(done) | self.env.is_truncated(state, params)
         reward, done = jnp.asarray(reward, jnp.float32), jnp.asarray(done, bool)
         return Step(observation, self._typed(state), reward, done, info)
 
@@ -110,8 +133,10 @@ class Simulator:
             later,
         )
 
-    def _step(self, key: Any, state: Any, action: Any) -> tuple[Any, Any, Any, Any, Any]:
-        return self.env.step_env(key, state, action, self.params)
+    def _step(
+        self, key: Any, state: Any, action: Any, params: Any = None
+    ) -> tuple[Any, Any, Any, Any, Any]:
+        return self.env.step_env(key, state, action, self.params if params is None else params)
 
     def repeats(self) -> bool:
         """Return whether the environment's functions are the same when JAX traces them again."""

@@ -17,6 +17,7 @@ from pydantic import Field, PrivateAttr, model_validator
 from primordia.habitats import conditions
 from primordia.habitats.conditions import Expression, Names
 from primordia.habitats.contract import Continuous, HostHabitat, Outcome
+from primordia.habitats.mujoco import physics
 from primordia.habitats.mujoco.bodies import Bodies
 from primordia.habitats.mujoco.simulator import (
     fingerprint,
@@ -153,6 +154,11 @@ class MuJoCo(HostHabitat, Settings):
         """Ticks a second."""
         return 1 / (self._model.opt.timestep * self.substeps)
 
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """Physical parameters that may change within a life."""
+        return physics.offered(self._model)
+
     def open(self, cells: int, watched: bool = False) -> None:
         """Allocate the bodies."""
         model = self._model
@@ -195,6 +201,10 @@ class MuJoCo(HostHabitat, Settings):
         """Least and largest controls, (nu,) each; infinite where a control has no range."""
         limited, (low, high) = self._model.actuator_ctrllimited, self._model.actuator_ctrlrange.T
         return np.where(limited, low, -np.inf), np.where(limited, high, np.inf)
+
+    def set_factors(self, cells: np.ndarray, factors: np.ndarray) -> None:
+        """Multiply the parameters of the bodies in cells; see `HostHabitat.set_factors`."""
+        physics.scale(self._model, self._bodies.batch, cells, factors)
 
     def _judge(self, values: dict[str, Any], fault: Any) -> Outcome:
         """Return the outcome of a tick, from the values of the observables after it."""
