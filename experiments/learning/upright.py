@@ -10,25 +10,20 @@ from gymnax.environments.classic_control import acrobot
 class Acrobot(acrobot.Acrobot):
     """Acrobot, which begins at the top and perceives how far it is from rest there."""
 
-    @property
-    def default_params(self) -> Any:
-        """The parameters of gymnax's Acrobot, with two torques to choose from."""
-        return super().default_params.replace(available_torque=jnp.array([-1.0, 1.0]))
-
     def reset_env(self, key: Any, params: Any) -> tuple[Any, Any]:
         """Return the first observation and state: angles and velocities within 0.1 of rest."""
         _, state = super().reset_env(key, params)
         state = state.replace(joint_angle1=_wrap(state.joint_angle1 + jnp.pi))
         return self.get_obs(state), state
 
+    def is_terminated(self, state: Any, params: Any) -> Any:
+        """Return whether the tip is below the line that Acrobot-v1 has as its goal."""
+        return ~super().is_terminated(state, params)
+
     def get_obs(self, state: Any, params: Any = None, key: Any = None) -> Any:
         """Return the angles of both joints from the upright line, and their velocities, (4,)."""
         first = _wrap(state.joint_angle1 + jnp.pi)
         return jnp.array([first, state.joint_angle2, state.velocity_1, state.velocity_2])
-
-    def action_space(self, params: Any) -> spaces.Discrete:
-        """Return the choice of a torque."""
-        return spaces.Discrete(2)
 
     def observation_space(self, params: Any) -> spaces.Box:
         """Return the bounds of the observation."""
