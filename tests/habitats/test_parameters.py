@@ -270,12 +270,12 @@ def test_a_habitat_that_names_parameters_must_scale_them(kind: type[Any], says: 
 
 
 class Swayed(Mill):
-    """A mill that turns by the mean of all factors."""
+    """A mill that turns by the largest of all factors."""
 
     parameters: Any = ("weight",)
 
     def step_scaled(self, bodies: Array, action: Array, factors: Array) -> tuple[Array, Outcome]:
-        return self.step(bodies, action * factors.mean())
+        return self.step(bodies, action * factors.max())
 
 
 def test_a_step_with_factors_is_checked_like_a_step() -> None:
