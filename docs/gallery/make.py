@@ -47,13 +47,14 @@ def found() -> dict[str, Any]:
     return json.loads(FOUND.read_text(encoding="utf-8")) if FOUND.exists() else {}
 
 
-def commands(entry: dict[str, Any]) -> tuple[list[str], list[str]]:
-    """Return the words after `primordia` that live an entry again, and those that film it."""
+def commands(entry: dict[str, Any]) -> list[list[str]]:
+    """Return the words after `primordia` that live an entry and its cousins again, and film it."""
     run, (film, *options) = RUNS / entry["name"], shlex.split(entry["film"])
-    return (
-        ["run", *shlex.split(entry["run"]), "--out", str(run)],
+    lived = {entry["name"]: entry["run"], **entry.get("cousins", {})}
+    return [
+        *(["run", *shlex.split(words), "--out", str(RUNS / name)] for name, words in lived.items()),
         [film, str(run), *options, "--out", f"{run}.mp4"],
-    )
+    ]
 
 
 def outcome(run: Path, entry: dict[str, Any]) -> dict[str, Any]:
@@ -128,8 +129,8 @@ HEAD = """\
 
 # Gallery
 
-Each entry has two commands: the first runs the world again, to the last bit, and the second films
-it. To compare, `primordia info RUN --json` prints the digest of the world, a hash of its whole
+The last command of each entry films a world, and the others run it again, to the last bit. To
+compare, `primordia info RUN --json` prints the digest of the world, a hash of its whole
 history; this page has its first 16 digits. The pictures are small copies of the films. Type the
 commands in the root of a clone. Games need the [extra](../how-to/install.md) `atari`, robots `mujoco`,
 MountainCar `gymnasium`, and Asterix `gymnax`.

@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
+from unittest.mock import ANY
 
 import numpy as np
 import pytest
@@ -76,18 +77,22 @@ LINES: dict[str, list[tuple[Any, ...]]] = {
         ("load", (Path("one"), Path("two")), False),
         ("plot", Path("new"), 2, ("ages", "my:own")),
     ],
-    "replay run": [("load", Path("run"), False), ("oldest", None), ("replay", None, WHOLE, ())],
+    "replay run": [("load", Path("run"), False), ("oldest", None), ("replay", None, WHOLE, [])],
     "replay run --world 0": [
-        ("load", Path("run"), False), ("oldest", 0), ("replay", None, WHOLE, ()),
+        ("load", Path("run"), False), ("oldest", 0), ("replay", None, WHOLE, []),
     ],
     "replay run --world 3 --trust": [
-        ("load", Path("run"), True), ("oldest", 3), ("replay", None, WHOLE, ()),
+        ("load", Path("run"), True), ("oldest", 3), ("replay", None, WHOLE, []),
     ],
     "replay run --organism 0": [
-        ("load", Path("run"), False), ("organism", 0, 0), ("replay", None, WHOLE, ()),
+        ("load", Path("run"), False), ("organism", 0, 0), ("replay", None, WHOLE, []),
     ],
     "replay run --organism 5 --world 3 --beside 2 --beside 1 --from 4 --to 9 --out x.gif": [
-        ("load", Path("run"), False), ("organism", 5, 3), ("replay", Path("x.gif"), (4, 9), (2, 1)),
+        ("load", Path("run"), False), ("organism", 5, 3), ("replay", Path("x.gif"), (4, 9), [2, 1]),
+    ],
+    "replay run --beside 0 --beside other --trust": [
+        ("load", Path("run"), True), ("oldest", None), ("load", Path("other"), True), ("oldest", None),
+        ("replay", None, WHOLE, [0, ANY]),
     ],
     "export run file": [("load", Path("run"), False), ("export", Path("file"), ("world", 0))],
     "export run file --world 2 --organism 9 --organism 7 --trust": [

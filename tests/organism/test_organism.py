@@ -73,13 +73,13 @@ def test_videos_and_relived_lives_are_those_of_the_organism_with_the_given_optio
 ) -> None:
     """A path may be given as a text."""
     with patch.object(organism, "replay") as replay, patch.object(organism, "relive") as relive:
-        twelfth.replay("a.gif", (0, 9), (3, 4))
+        twelfth.replay("a.gif", (0, 9), (3, twelfth))
         twelfth.replay()
         twelfth.relive(0, "a.npz", Path("b.gif"))
         twelfth.relive()
     assert replay.call_args_list == [
-        call(twelfth.run, 12, 2, Path("a.gif"), (0, 9), beside=(3, 4)),
-        call(twelfth.run, 12, 2, None, (None, None), beside=()),
+        call(twelfth.run, 12, 2, Path("a.gif"), (0, 9), beside=[3, (twelfth.run, 12, 2)]),
+        call(twelfth.run, 12, 2, None, (None, None), beside=[]),
     ]
     assert relive.call_args_list == [
         call(twelfth.run, 12, 2, since=0, save=Path("a.npz"), film=Path("b.gif")),

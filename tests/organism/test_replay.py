@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from PIL import Image
+from PIL import Image, ImageColor
 
 from primordia import files
 from primordia.errors import InputError
+from primordia.habitats.framed import PAPER
 from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
 from primordia.organism import video
@@ -103,14 +104,14 @@ def test_a_life_without_a_tick_cannot_be_shown(
 
 
 @pytest.mark.parametrize("out", [None, Path("new.gif")])
-def test_a_video_shows_the_named_lives_of_one_world(
+def test_a_video_shows_the_named_lives_of_one_world_and_then_those_of_other_runs(
     out: Path | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Lives are in the order of birth, each once. A file without a given name is in the run's folder."""
     made: list[Any] = []
 
-    def of(run: Any, organism: int, world: int = 0) -> tuple[int, int]:
-        return organism, world
+    def of(run: Any, organism: int, world: int = 0) -> tuple[str, int, int]:
+        return str(run.path), organism, world
 
     def parts_of(*given: Any) -> str:
         return f"parts of {given}"
@@ -121,11 +122,12 @@ def test_a_video_shows_the_named_lives_of_one_world(
     monkeypatch.setattr(bundle, "refuse_changes", lambda path: made.append(("run", path)))
     monkeypatch.setattr(files, "own_folder", lambda path: made.append(("own", path)))
     run: Any = SimpleNamespace(path=Path("RUN"), made_on="cpu")
-    path = replay.replay(run, 5, 3, out, (4, 9), 2.5, beside=(12, 2, 5))
-    lives = [(2, 3), (5, 3), (12, 3)]
+    other: Any = SimpleNamespace(path=Path("OTHER"), made_on="cpu")
+    path = replay.replay(run, 5, 3, out, (4, 9), 2.5, beside=(12, (other, 1, 0), 2, 5))
+    lives = [("RUN", 2, 3), ("RUN", 5, 3), ("RUN", 12, 3), ("OTHER", 1, 0)]
     film = (path, *((life, f"parts of {(life, (4, 9), 2.5)}") for life in lives))
     if out is None:
-        assert path == Path("RUN/videos/world3-organism2-5-12.mp4")
+        assert path == Path("RUN/videos/world3-organism2-5-12-OTHER-world0-organism1.mp4")
         assert made == [("run", Path("RUN")), ("own", Path("RUN/videos")), film]
     else:
         assert (path, made) == (out, [film])
@@ -181,14 +183,33 @@ def test_a_film_has_the_speed_of_the_life_and_at_most_the_rate_of_its_kind_of_fi
     monkeypatch.setattr(
         video, "write", lambda path, shown, *more: made.append((path, [*shown], *more))
     )
-    one, other = (SimpleNamespace(law=None, habitat=None) for _ in range(2))
+    one, other, third = (
+        SimpleNamespace(law=None, habitat=None, run=SimpleNamespace(path=Path(run)))
+        for run in "AAB"
+    )
     short, long = [range(1, 9)], [range(1, 15)]
     replay.film(Path(name), (one, short), (other, long))
     assert made == [
-        (one, short, (one, short, 14), step, rate / step),
-        (other, long, (other, long, 14), step, rate / step),
+        (one, short, (one, short, 14), step, rate / step, False),
+        (other, long, (other, long, 14), step, rate / step, False),
         (Path(name), ["first", "second"], rate / step, None),
     ]
+    made.clear()
+    replay.film(Path(name), (one, short), (third, long))  # of two runs, which the pictures name
+    assert [given[5] for given in made[:2]] == [True, True]
+
+
+def test_lives_whose_ticks_last_for_different_times_are_not_shown_side_by_side(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    lives: Any = [
+        SimpleNamespace(run=SimpleNamespace(path=Path(run)), rate=rate)
+        for run, rate in (("A", 50.0), ("B", 60.0))
+    ]
+    monkeypatch.setattr(replay, "picture_rate", lambda life: life.rate)
+    says = "^B: a second has 60 ticks, and 50 in A, so their lives cannot be shown side by side$"
+    with pytest.raises(InputError, match=says):
+        replay.film(Path("a.mp4"), *((life, [range(1, 9)]) for life in lives))
 
 
 @given(*(st.integers(1, most) for most in (60, 40, 9, 20)), st.booleans())
@@ -303,8 +324,8 @@ def test_a_card_shows_the_number_of_ticks_that_are_left_out(
     monkeypatch.setattr(replay, "_card", card)
     monkeypatch.setattr(replay, "moments", lambda *given: iter([(0, None, 0), (1, None, 0)]))
     monkeypatch.setattr(replay, "picture_of", lambda *given: Image.new("RGB", (64, 36)))
-    life: Any = None
-    list(replay._pictures(life, [range(1, 101), range(1331, 1431)], NO_PANELS, 1, RATE))
+    life: Any = SimpleNamespace(run=SimpleNamespace(path=Path("RUN")))
+    list(replay._pictures(life, [range(1, 101), range(1331, 1431)], NO_PANELS, 1, RATE, False))
     assert cards == [((64, 36), "1,230 ticks later")]
 
 
@@ -316,8 +337,8 @@ def test_cards_and_the_last_picture_stay_at_least_one_frame(
     moments = [(0, None, 0), (0, None, 1), (1, None, 0)]
     monkeypatch.setattr(replay, "moments", lambda *given: iter(moments))
     monkeypatch.setattr(replay, "picture_of", lambda *given: picture)
-    life: Any = None
-    frames = list(replay._pictures(life, [range(1, 3), range(9, 10)], NO_PANELS, 1, rate))
+    life: Any = SimpleNamespace(run=SimpleNamespace(path=Path("RUN")))
+    frames = list(replay._pictures(life, [range(1, 3), range(9, 10)], NO_PANELS, 1, rate, False))
     still = max(1, round(replay.STILL * rate))
     assert len(frames) == len(moments) + 2 * still
     assert [frame is picture for frame in frames[:3]] == [True, True, False]
@@ -331,6 +352,15 @@ def test_the_words_of_a_card_are_in_its_middle() -> None:
     left, top, right, bottom = ink
     assert (left + right) / 2 == pytest.approx(200, abs=5)
     assert (top + bottom) / 2 == pytest.approx(50, abs=5)
+
+
+def test_pictures_of_different_sizes_do_not_overlap() -> None:
+    films = [iter([Image.new("RGB", size, colour)]) for size, colour in (((6, 4), 1), ((3, 9), 2))]
+    (whole,) = replay._side_by_side(films)
+    assert whole.size == (6 + replay.GAP + 6, 9)
+    assert whole.getpixel((5, 3)) == (1, 0, 0)
+    assert whole.getpixel((5, 4)) == ImageColor.getrgb(PAPER)
+    assert whole.getpixel((6 + replay.GAP, 8)) == (2, 0, 0)
 
 
 @given(st.lists(st.integers(1, 5), min_size=1, max_size=7))

@@ -68,7 +68,10 @@ def plot(runs: tuple[Path, ...], out: Path | None, world: int, figures: tuple[st
     "--world", type=int, help="World of the organism [0 with --organism, otherwise the champion's]."
 )
 @click.option(
-    "--beside", type=int, multiple=True, metavar="ID", help="Show this life too; may be repeated."
+    "--beside",
+    multiple=True,
+    metavar="ID|RUN",
+    help="Show this life too, or that of another run's champion; may be repeated.",
 )
 @click.option("--from", "begin", type=int, help="First age shown, in ticks.")
 @click.option("--to", "end", type=int, help="Last age shown, in ticks.")
@@ -77,7 +80,7 @@ def plot(runs: tuple[Path, ...], out: Path | None, world: int, figures: tuple[st
 @trust_option
 def replay(
     run: Path,
-    beside: tuple[int, ...],
+    beside: tuple[str, ...],
     begin: int | None,
     end: int | None,
     out: Path | None,
@@ -87,11 +90,17 @@ def replay(
 
     Without --organism the life is that of the champion: the longest-lived of the later half of the
     births.
-    With --beside, lives of the same world are shown side by side, each from birth, in order of birth.
+    With --beside, lives are shown side by side, each from birth: organisms of the same world in order of
+    birth, then the champions of other runs.
     A life that has ended stays at the last picture.
     If brains learn or the world changes within lives, a panel shows fast weights, outputs and changes.
     """
-    click.echo(chosen_organism(run, **chosen).replay(out, (begin, end), beside))
+    one, trust = chosen_organism(run, **chosen), chosen["trust"]
+    others = [
+        int(each) if each.isdecimal() else chosen_organism(Path(each), None, None, trust)
+        for each in beside
+    ]
+    click.echo(one.replay(out, (begin, end), others))
 
 
 @click.command(short_help="Write genomes to a file for new runs, or write a brain as ONNX.")

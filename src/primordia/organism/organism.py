@@ -98,12 +98,22 @@ class Organism:
         self,
         out: str | Path | None = None,
         ages: tuple[int | None, int | None] = (None, None),
-        beside: Sequence[int] = (),
+        beside: Sequence["int | Organism"] = (),
     ) -> Path:
         """Make a video of the organism's life, or of several lives. Return the file; see
-        `replay.replay`."""
+        `replay.replay`.
+
+        Args:
+            out: an .mp4 or .gif file.
+            ages: first and last age shown.
+            beside: others whose lives are shown too: birth numbers in the same world, or organisms of
+                any run.
+        """
         path = Path(out) if out is not None else None
-        return replay(self.run, self.id, self.world, path, ages, beside=beside)
+        others = [
+            each if isinstance(each, int) else (each.run, each.id, each.world) for each in beside
+        ]
+        return replay(self.run, self.id, self.world, path, ages, beside=others)
 
     def relive(
         self,

@@ -31,6 +31,10 @@ GAP = 16
 """pixels between lives that are shown side by side"""
 
 
+Named = tuple[Records, int, int]
+"""an organism: its run, its birth number and its world"""
+
+
 @on_its_device
 def replay(
     run: Records,
@@ -39,12 +43,12 @@ def replay(
     out: Path | None = None,
     ages: tuple[int | None, int | None] = (None, None),
     part: float | None = None,
-    beside: Sequence[int] = (),
+    beside: Sequence[int | Named] = (),
 ) -> Path:
     """Make a video of a life, or of several side by side. Return the path of the file.
 
-    Lives side by side begin together, in the order of their births. A life that has ended keeps its
-    last picture.
+    Lives side by side begin together: first those of this world in the order of their births, then
+    those of other runs. A life that has ended keeps its last picture.
 
     Args:
         run: the organism's run.
@@ -54,19 +58,23 @@ def replay(
         ages: first and last age shown, in ticks. By default the whole life is shown, or the first and
             last 30 seconds of a life longer than a minute.
         part: seconds shown at each end of a long life; by default 30.
-        beside: birth numbers of other organisms of the world, whose lives are shown too.
+        beside: other organisms whose lives are shown too: birth numbers in the same world, or a run,
+            a birth number and a world.
 
     Raises:
-        InputError: no such organism was born, the habitat draws no pictures, or no age is left to show.
+        InputError: no such organism was born, the habitat draws no pictures, no age is left to show, or
+            the ticks of two lives last for different times.
         Trouble: the video cannot be written, or the life does not repeat as recorded.
     """
     if out is None:
         bundle.refuse_changes(run.path)
-    numbers = sorted({organism, *beside})
-    name = f"world{world}-organism{'-'.join(map(str, numbers))}.mp4"
-    path = out or run.path / "videos" / name
+    numbers = sorted({organism, *(each for each in beside if isinstance(each, int))})
+    others = [each for each in beside if not isinstance(each, int)]
+    name = f"world{world}-organism{'-'.join(map(str, numbers))}"
+    name += "".join(f"-{one.path.name}-world{at}-organism{id}" for one, id, at in others)
+    path = out or run.path / "videos" / f"{name}.mp4"
     video.check_name(path)
-    lives = [RelivedLife.of(run, number, world) for number in numbers]
+    lives = [RelivedLife.of(*each) for each in [*((run, id, world) for id in numbers), *others]]
     shown = [(life, parts_of(life, ages, part)) for life in lives]
     if out is None:
         files.own_folder(path.parent)
@@ -75,17 +83,21 @@ def replay(
 
 
 def film(path: Path, *shown: tuple[RelivedLife, list[range]]) -> None:
-    """Make a video, .mp4 or .gif, of parts of lives of one run, side by side; see `parts_of`.
+    """Make a video, .mp4 or .gif, of parts of lives, side by side; see `parts_of`.
 
     Raises:
-        InputError: a GIF cannot show a picture as long as the ticks of the habitat ask.
+        InputError: a GIF cannot show a picture as long as the ticks of the habitat ask, or the ticks of
+            two lives last for different times.
         Trouble: the video cannot be written, or a life does not repeat as recorded.
     """
-    rate = picture_rate(shown[0][0])
+    rate, several = (
+        _common_rate([life for life, _ in shown]),
+        len({life.run.path for life, _ in shown}) > 1,
+    )
     step = ceil(rate / video.FASTEST[path.suffix])
     longest = max(len(part) for _, parts in shown for part in parts)
     films = [
-        _pictures(life, parts, Panels(life, parts, longest), step, rate / step)
+        _pictures(life, parts, Panels(life, parts, longest), step, rate / step, several)
         for life, parts in shown
     ]
     pictures = _side_by_side(films)
@@ -105,6 +117,18 @@ def picture_rate(life: RelivedLife) -> float:
         raise InputError(f"{life.run.path}: the habitat draws no pictures, since it has no {lacks}")
     assert life.habitat.rate
     return life.habitat.rate
+
+
+def _common_rate(lives: list[RelivedLife]) -> float:
+    """Return the ticks in a second of all lives; raise InputError if they differ."""
+    rate = picture_rate(lives[0])
+    for life in lives:
+        if (own := picture_rate(life)) != rate:
+            raise InputError(
+                f"{life.run.path}: a second has {own:g} ticks, and {rate:g} in {lives[0].run.path}, so"
+                " their lives cannot be shown side by side"
+            )
+    return rate
 
 
 def parts_of(
@@ -137,29 +161,36 @@ def parts_of(
 
 
 def _pictures(
-    life: RelivedLife, parts: list[range], panels: Panels, step: int, rate: float
+    life: RelivedLife,
+    parts: list[range],
+    panels: Panels,
+    step: int,
+    rate: float,
+    with_run: bool,
 ) -> Iterator[Image.Image]:
     """Yield a picture of every `step`-th tick of the parts; the last one is repeated.
 
-    A card between two parts tells the time that is left out.
+    A card between two parts tells the time that is left out. Pictures may have the name of the run.
     """
+    of = life.run.path.name if with_run else ""
     still, part, picture = max(1, round(STILL * rate)), 0, None
     for part_now, stretch, i in moments(life, parts, step, panels.follow):
         if part_now > part and picture is not None:
             left_out = parts[part_now].start - parts[part].stop
             yield from repeat(_card(picture.size, f"{left_out:,} ticks later"), still)
-        part, picture = part_now, panels.under(picture_of(life, stretch, i), part_now, stretch, i)
+        drawn = picture_of(life, stretch, i, of)
+        part, picture = part_now, panels.under(drawn, part_now, stretch, i)
         yield picture
     assert picture is not None
     yield from repeat(picture, still)
 
 
 def _side_by_side(films: list[Iterator[Image.Image]]) -> Iterator[Image.Image]:
-    """Yield pictures that join films of one size in rows; an ended film keeps its last picture."""
+    """Yield pictures that join films in rows; an ended film keeps its last picture."""
     columns = isqrt(len(films) - 1) + 1
     rows = ceil(len(films) / columns)
     held = [next(film) for film in films]
-    width, height = held[0].size
+    width, height = (max(picture.size[axis] for picture in held) for axis in (0, 1))
     for pictures in chain([held], zip_longest(*films)):
         held = [old if new is None else new for old, new in zip(held, pictures, strict=True)]
         size = (columns * (width + GAP) - GAP, rows * (height + GAP) - GAP)
@@ -187,12 +218,16 @@ def moments(
                 yield number, stretch, int(i)
 
 
-def picture_of(life: RelivedLife, stretch: Stretch, i: int) -> Image.Image:
-    """Return the picture of one tick of a stretch, with captions."""
+def picture_of(life: RelivedLife, stretch: Stretch, i: int, run: str = "") -> Image.Image:
+    """Return the picture of one tick of a stretch, with captions; they may begin with a run's name."""
     tick = int(stretch.tick[i])
     body = jax.tree.map(lambda leaf: leaf[i], stretch.bodies)
     picture = life.habitat.picture(body, stretch.action[i])
-    words = [f"organism {life.record.id[0]}", f"age {tick - life.record.born[0]:,}"]
+    words = [
+        *([run] if run else []),
+        f"organism {life.record.id[0]}",
+        f"age {tick - life.record.born[0]:,}",
+    ]
     if life.law.metabolism is not None:
         words.append(f"energy {stretch.energy[i] / ONE:,.1f}")
     if tick == life.ends and life.cause is not None:
