@@ -1,6 +1,6 @@
 """What do parents give to their children, beside what theory says?
 
-    python experiments/endowments.py founders experiments/investment/nursery.toml
+    python experiments/endowments.py founders experiments/investment/tasks/nursery.toml
     python experiments/endowments.py experiments/investment/theory.toml
 
 The first command writes the founders' genomes. The second one needs the experiment to have been run
@@ -36,7 +36,7 @@ Floats = NDArray[np.float64]
 
 
 def write_founders(file: Path) -> None:
-    """Write a genome for each of FOUNDERS beside the task's file."""
+    """Write a genome for each of FOUNDERS into the folder above that of the task's file."""
     settings = config.load(str(file))
     layout, store = settings.build_layout(settings.build_habitat()), settings.metabolism.store
     for name, (energy, share) in FOUNDERS.items():
@@ -45,7 +45,7 @@ def write_founders(file: Path) -> None:
         weights[0, 3, 0] = np.log(share / (1 - share))
         shape = layout.blocks[0][1]
         genome = weights if shape == (4, 2) else weights.transpose(0, 2, 1)
-        path = file.parent / f"{name}.safetensors"
+        path = file.parent.parent / f"{name}.safetensors"
         genomes.write(path, layout, genome.reshape(1, -1), {"copies above": str(energy)})
 
 
