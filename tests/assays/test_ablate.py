@@ -24,12 +24,13 @@ def subjects(poles: primordia.Run) -> Subjects:
 
 def test_frozen_senses_are_those_of_an_evaluation(poles: primordia.Run) -> None:
     champions = poles.champions()
-    found = ablate(of_run(poles.opened()), games=3, ticks=400)
+    found = poles.ablate(games=3, ticks=400)
     expected = poles.evaluate(champions, games=3, ticks=400, senses="frozen")
     whole = poles.evaluate(champions, games=3, ticks=400)
     own = [each for each in found if each.without == "senses"]
     assert [each.lifespan for each in own] == [each.lived.ticks.mean() for each in expected]
     assert [each.intact for each in own] == [each.lived.ticks.mean() for each in whole]
+    assert poles.ablate(champions[1:], games=3, ticks=400) == found[1::2]
 
 
 def test_each_loss_is_measured_for_each_organism(subjects: Subjects) -> None:

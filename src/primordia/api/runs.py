@@ -11,8 +11,10 @@ import numpy as np
 import pyarrow as pa
 
 from primordia import device as devices
+from primordia.assays.ablate import Ablation, ablate
 from primordia.assays.controls import FOUNDERS, Standing, evolved, unevolved
 from primordia.assays.shadow import ORGANISMS, Shadow, shadow
+from primordia.assays.subjects import of_run
 from primordia.errors import InputError, Trouble
 from primordia.history.heredity import Inherited, heredity
 from primordia.history.info import info
@@ -136,6 +138,13 @@ class Run:
     def shadow(self, organisms: int = ORGANISMS, ticks: int | None = None) -> Shadow:
         """Let organisms and their unselected shadows live again; see `shadow.shadow`."""
         return shadow(self.opened(), organisms, ticks)
+
+    def ablate(self, organisms: Iterable[Organism] = (), **options: Any) -> list[Ablation]:
+        """Let organisms, by default the champions, play games without their learning, their memory,
+        their senses or some of their weights; see `ablate.ablate`."""
+        run = self.opened()
+        with devices.selected(None, run.made_on):
+            return ablate(of_run(run, [(each.id, each.world) for each in organisms]), **options)
 
     def heredity(self, after: float = LATE) -> list[Inherited]:
         """Measure how length of life is inherited in each world; see `history.heredity`."""

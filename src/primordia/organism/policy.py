@@ -34,6 +34,13 @@ class Policy:
         """The present memory, float32 (M,)."""
         return np.asarray(self._memory)[0]
 
+    @property
+    def pictured(self) -> dict[str, np.ndarray]:
+        """What the brain shows of its present memory, by name, float32 (rows, columns) each; see
+        `Brain.pictured`."""
+        shown = self._law.brain.pictured(self._memory, self._law.senses, self._law.outputs)
+        return {name: np.asarray(each)[0] for name, each in shown.items()}
+
     def to_onnx(self, path: str | Path, about: Mapping[str, str] | None = None) -> None:
         """Write the brain as an ONNX model, with `about` as metadata; see `onnx.write`."""
         onnx.write(Path(path), self._law, self.weights, dict(about or {}))

@@ -12,6 +12,7 @@ import pyarrow.parquet as pq
 
 from primordia import files
 from primordia.errors import InputError
+from primordia.habitats.changing import Changed
 from primordia.law.metabolism import ONE
 from primordia.organism.reliving.instant import Stretch
 
@@ -52,6 +53,8 @@ def _columns(stretch: Stretch, counts: tuple[str, ...]) -> Columns:
         "energy": stretch.energy / ONE,
         "food": stretch.eaten / ONE,
     }
+    if isinstance(stretch.bodies, Changed):
+        own["changes"] = np.asarray(stretch.bodies.course.times).sum(axis=1, dtype=np.int32)
     return own | {
         name: column
         for name, column in zip(counts, stretch.counts.T, strict=True)
