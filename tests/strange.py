@@ -77,3 +77,9 @@ GIVING: dict[str, Any] = {
     ],
 }
 """Organisms that perceive their energy, choose when to copy themselves, and what a child begins with."""
+PASSING: dict[str, Any] = {
+    **STRANGE,
+    "brain": {"kind": "plastic", "hidden": 3, "activity": "graded", "gain": 1.0, "bound": 1.0,
+              "decay": 0.02, "inherited": True, "efference": True},
+}  # fmt: skip
+"""Children that begin with what their parents have learned, which fades slowly."""

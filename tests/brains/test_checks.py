@@ -27,6 +27,9 @@ class Plain(Brain):
     def pictured(self, memory: Array, senses: int, outputs: int) -> Any:
         return self.replaced.get("pictured", {})
 
+    def passed_on(self, memory: Array, senses: int, outputs: int) -> Any:
+        return self.replaced.get("passed_on", lambda memory: None)(memory)
+
     def __call__(self, genome: Genome, memory: Array, senses: Array) -> Any:
         pair = memory, jnp.zeros((len(senses), OUTPUTS))
         return self.replaced.get("thought", lambda pair: pair)(pair)
@@ -71,6 +74,10 @@ def test_a_memory_of_any_length_up_to_the_largest_passes(replaced: dict[str, Any
         ({"pictured": jnp.zeros((32, 2, 3))}, "does not give what pictures show as arrays of"),
         ({"pictured": {"w": jnp.zeros((32, 3))}}, "does not give what pictures show as arrays of"),
         ({"pictured": {"w": jnp.zeros((2, 32, 3))}}, "does not give what pictures show"),
+        (
+            {"memory": 3, "thought": lambda pair: pair, "passed_on": lambda memory: memory[:, :2]},
+            r"gives what children inherit as float32 \(32, 2\); the contract says float32 \(32, 3\)",
+        ),
     ],
 )
 def test_a_fault_of_a_brain_is_named(replaced: dict[str, Any], says: str) -> None:

@@ -156,6 +156,19 @@ def test_learning_costs_energy_for_each_change_of_a_fast_weight(hidden: int) -> 
     assert Plastic(hidden=hidden).spent(before, after, SENSES, OUTPUTS) is None
 
 
+@pytest.mark.parametrize("hidden", [HIDDEN, 2])
+def test_children_inherit_fast_weights_and_nothing_else(hidden: int) -> None:
+    brain, size = Plastic(hidden=hidden, gain=1.0, inherited=True), hidden * OUTPUTS
+    *_, memories, _ = thought(brain)
+    found = brain.passed_on(jnp.asarray(memories[-1]), SENSES, OUTPUTS)
+    assert found is not None
+    assert memories[-1][:, :-size].all()
+    assert not found[:, :-size].any()
+    np.testing.assert_array_equal(found[:, -size:], memories[-1][:, -size:])
+    for other in (Plastic(hidden=hidden), Recurrent(hidden=hidden)):
+        assert other.passed_on(jnp.asarray(memories[-1]), SENSES, OUTPUTS) is None
+
+
 def test_a_plastic_brain_with_a_bound_of_0_does_not_learn() -> None:
     brain = Plastic(hidden=HIDDEN, bound=0.0, gain=1.0)
     g, senses, memories, outputs = thought(brain)

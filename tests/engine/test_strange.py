@@ -23,11 +23,17 @@ from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests import commands
 from tests.history.test_rebuilding import assert_rebuilt
-from tests.strange import BLOCKS, GIVING, QUIET, SEEDS, STRANGE, STRANGER, TICKS
+from tests.strange import BLOCKS, GIVING, PASSING, QUIET, SEEDS, STRANGE, STRANGER, TICKS
 from tests.test_goldens import assert_lived_as_it_did
 from tests.worlds import MILL, Lived, config
 
-WORLDS = {"strange": STRANGE, "stranger": STRANGER, "blocks": BLOCKS, "giving": GIVING}
+WORLDS = {
+    "strange": STRANGE,
+    "stranger": STRANGER,
+    "blocks": BLOCKS,
+    "giving": GIVING,
+    "passing": PASSING,
+}
 TURNING: dict[str, Any] = {
     **MILL,
     "brain": {"hidden": 4},

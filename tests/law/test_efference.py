@@ -84,6 +84,18 @@ def test_the_price_of_learning_is_that_of_the_inner_brain() -> None:
     np.testing.assert_allclose(found, expected, rtol=1e-5)
 
 
+def test_children_inherit_what_the_inner_brain_passes_on() -> None:
+    assert Efferent(inner=Plastic(), action=PARTS).passed_on(jnp.ones((1, 99)), 4, 5) is None
+    brain, senses, outputs = Efferent(inner=Plastic(hidden=3, inherited=True), action=PARTS), 4, 6
+    length, last = brain.memory(senses, outputs), senses + PARTS.size
+    memory = np.arange(1, 2 * length + 1, dtype=np.float32).reshape(2, length)
+    fast = np.s_[:, length - last - 3 * outputs : length - last]
+    expected = np.zeros_like(memory)
+    expected[fast] = memory[fast]
+    found: Any = brain.passed_on(jnp.asarray(memory), senses, outputs)
+    np.testing.assert_array_equal(found, expected)
+
+
 def test_without_plasticity_the_inner_brain_does_not_learn() -> None:
     assert Efferent(inner=Linear(), action=PARTS).innate() is None
     innate: Any = Efferent(inner=Plastic(), action=PARTS).innate()

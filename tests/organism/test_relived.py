@@ -156,7 +156,7 @@ def test_an_organism_older_than_a_fork_begins_with_the_state_of_the_fork(
     monkeypatch.setattr(relived, "rebuild", lambda run, *place: np.float32([*place]))
     lives = SimpleNamespace(
         row=lambda organism, world: {(5, 1): 0}[organism, world],
-        take=lambda rows: SimpleNamespace(born=np.array([born])),
+        take=lambda rows: SimpleNamespace(born=np.array([born]), id=np.array([5])),
     )
     layout = SimpleNamespace(split=lambda genome: genome.tolist())
     run: Any = SimpleNamespace(

@@ -119,6 +119,13 @@ class Herd(Two):
         return memory, matvec(genome["v"], senses) + genome["w"][0, 0, 0]
 
 
+class Sharing(Fused):
+    """A brain whose children inherit the memories of all parents."""
+
+    def passed_on(self, memory: Array, senses: int, outputs: int) -> Array:
+        return memory + memory.sum(axis=0)
+
+
 class Misnamed(Plain):
     def blocks(self, senses: int, outputs: int) -> dict[str, Shape]:
         return {"my weights": (outputs, senses)}
@@ -154,6 +161,7 @@ class Listed(Plain):
         (Partly(), "changes its genome argument"),
         (Herd(), "Herd gives different bits for organism 1 when organism 0 has another genome"),
         (Remembering(), "Remembering gives different bits for organism 1 when organism 0 has another"),
+        (Sharing(), "Sharing gives different bits .* when 1 instead of 32 pass on their memories"),
         (Misnamed(), "'my weights' cannot name a block .*; use letters"),
         (Growing(), "has different blocks of weights at each call"),
         (Half(), "has a memory of length 0.5; return a whole number"),

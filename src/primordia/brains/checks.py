@@ -41,6 +41,12 @@ def check_brain(brain: Brain, senses: int, outputs: int) -> None:
     )
     tracing.typed("its memory", thought[0], (COUNT, length), jnp.float32)
     tracing.typed("its output", thought[1], (COUNT, outputs), jnp.float32)
+    _check_uses_of_memory(tracing, brain, senses, outputs)
+
+
+def _check_uses_of_memory(tracing: Tracing, brain: Brain, senses: int, outputs: int) -> None:
+    """Check what a brain's other methods return for memories: `pictured`, `spent`, `passed_on`."""
+    length = brain.memory(senses, outputs)
     shown = tracing.traced(
         "pictured", lambda memory: brain.pictured(memory, senses, outputs), _floats(length)
     )
@@ -48,7 +54,6 @@ def check_brain(brain: Brain, senses: int, outputs: int) -> None:
         isinstance(shown, dict) and all(map(_is_map, shown.values())),
         "does not give what pictures show as arrays of organisms, rows and columns, by name",
     )
-
     spent = tracing.traced(
         "spent",
         lambda *both: brain.spent(both[0], both[1], senses, outputs),
@@ -56,6 +61,11 @@ def check_brain(brain: Brain, senses: int, outputs: int) -> None:
     )
     if spent is not None:
         tracing.typed("what thinking costs", spent, (COUNT,), jnp.float32)
+    passed_on = tracing.traced(
+        "passed_on", lambda memory: brain.passed_on(memory, senses, outputs), _floats(length)
+    )
+    if passed_on is not None:
+        tracing.typed("what children inherit", passed_on, (COUNT, length), jnp.float32)
 
 
 def _is_map(found: object) -> bool:

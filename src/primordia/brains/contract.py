@@ -56,7 +56,7 @@ class Brain(Settings, ABC):
         """
 
     def memory(self, senses: int, outputs: int) -> int:
-        """Return M, the count of numbers in an organism's memory; all are zero at birth."""
+        """Return M, the count of numbers in an organism's memory; founders begin with zeros."""
         return 0
 
     def innate(self) -> "Brain | None":
@@ -74,6 +74,14 @@ class Brain(Settings, ABC):
         """Return the energy that a tick of thinking costs, float32 (N,); None: thinking is free.
 
         `before` and `after` are memories (N, M); `senses` and `outputs` are as in `blocks`.
+        """
+        return None
+
+    def passed_on(self, memory: Array, senses: int, outputs: int) -> Array | None:
+        """Return the memories with which children begin, float32 (N, M); None: with zeros.
+
+        `memory` holds the memories of their parents at the end of the tick of birth, (N, M); `senses`
+        and `outputs` are as in `blocks`. Founders begin with zeros, and so does every player of a game.
         """
         return None
 

@@ -38,10 +38,11 @@ class Plastic(Brain):
         p  = 1 for the largest output and -1 for the others, or tanh y
 
     x', h', p' and F' are those of the last tick. They are 0 at birth, so nothing learned is
-    inherited. The weights W1, W2 and M and the coefficients a, b, c, d and r are inherited. The rule is
-    that of Najarro & Risi 2020, "Meta-learning through Hebbian plasticity in random networks" (arXiv
-    2007.02686, eq. 2), times m: a signal for each output, which the brain computes from the change
-    of its senses (neuromodulation; Soltoggio et al. 2018, arXiv 1703.10371, sec. 4).
+    inherited, unless `inherited` is set: then F' is the parent's F at the birth. The weights W1, W2 and
+    M and the coefficients a, b, c, d and r are inherited in any case. The rule is that of Najarro &
+    Risi 2020, "Meta-learning through Hebbian plasticity in random networks" (arXiv 2007.02686, eq. 2),
+    times m: a signal for each output, which the brain computes from the change of its senses
+    (neuromodulation; Soltoggio et al. 2018, arXiv 1703.10371, sec. 4).
     """
 
     hidden: Hidden = 8
@@ -68,6 +69,11 @@ class Plastic(Brain):
 
     price: float = Field(
         0.0, ge=0, le=1e6, description="energy that a change of a fast weight by 1 costs"
+    )
+    inherited: bool = Field(
+        False,
+        description="true: a child begins with the fast weights that its parent has at the birth"
+        " (Lamarckian inheritance); false: with 0",
     )
 
     def blocks(self, senses: int, outputs: int) -> dict[str, Shape]:
@@ -98,6 +104,12 @@ class Plastic(Brain):
         change = jnp.abs(now - was).reshape(len(now), 1, -1)
         each = jnp.full((len(now), change.shape[2]), np.float32(self.price))
         return matvec(change, each)[:, 0]
+
+    def passed_on(self, memory: Array, senses: int, outputs: int) -> Array | None:
+        """Return memories with the fast weights, and 0 for the last tick; None unless `inherited`."""
+        if not self.inherited:
+            return None
+        return memory.at[:, : -self.hidden * outputs].set(0)
 
     def pictured(self, memory: Array, senses: int, outputs: int) -> dict[str, Array]:
         """Return the fast weights as shares of the bound, a row for each output; none without a bound."""

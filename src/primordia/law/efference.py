@@ -45,6 +45,12 @@ class Efferent(Brain):
         last = senses + self.action.size
         return self.inner.spent(before[:, :-last], after[:, :-last], senses + last, outputs)
 
+    def passed_on(self, memory: Array, senses: int, outputs: int) -> Array | None:
+        """Return what the inner brain passes on, and 0 for the last senses and the last command."""
+        last = senses + self.action.size
+        inner = self.inner.passed_on(memory[:, :-last], senses + last, outputs)
+        return None if inner is None else jnp.pad(inner, ((0, 0), (0, last)))
+
     def __call__(self, genome: Genome, memory: Array, senses: Array) -> tuple[Array, Array]:
         """Think for one tick; see `Brain`."""
         kept = senses.shape[1] + self.action.size

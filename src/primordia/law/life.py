@@ -48,6 +48,25 @@ class Vitals(NamedTuple):
     eaten: Array
 
 
+def first_memory(law: Law, parents: Array, founder: Array) -> Array:
+    """Return the memories with which N organisms begin, float32 (N, M).
+
+    Args:
+        law: the law.
+        parents: memories of their parents at the end of the tick of birth, float32 (N, M).
+        founder: whether they are founders, which begin with 0, bool (N,).
+    """
+    passed_on = law.brain.passed_on(parents, law.senses, law.outputs)
+    none = jnp.zeros_like(parents)
+    return none if passed_on is None else jnp.where(founder[:, None], none, passed_on)
+
+
+def inherits_memory(law: Law) -> bool:
+    """Return whether the first memory of a child depends on its parent's memory."""
+    parents = jnp.zeros((1, law.memory), jnp.float32)
+    return law.brain.passed_on(parents, law.senses, law.outputs) is not None
+
+
 def think(
     law: Law, genome: Genome, memory: Array, senses: Array, key: Wide, cell: Array
 ) -> Thought:

@@ -16,6 +16,7 @@ from primordia.law import events as log
 from primordia.law.events import Events, Rows
 from primordia.law.heredity import Birth, Newborn
 from primordia.law.law import Law
+from primordia.law.life import first_memory
 from primordia.law.metabolism import to_fixed_point
 from primordia.law.moments import change_in
 from primordia.law.tick import Fates
@@ -227,9 +228,14 @@ def _birth(law: Law, worlds: Worlds, births: Births, keys: Streams, cells: Array
         seed=worlds.seed.take(world),
         number=births.number.take(cells),
         draws=Draws(keys.take(world), cells % law.cells),
-        founder=births.founded[cells] | (law.heredity.inheritance == "founder"),
+        founder=_founders(law, births)[cells],
         rates=law.heredity.rates(law.in_cells(worlds.climate, cells)),
     )
+
+
+def _founders(law: Law, births: Births) -> Array:
+    """Return which newborn inherit nothing, bool (C,): without a parent, or without heredity."""
+    return births.founded | (law.heredity.inheritance == "founder")
 
 
 def _mates(law: Law, births: Births, keys: Streams, cells: Array, founder: Array) -> Array | None:
@@ -285,9 +291,10 @@ def _begin_lives(
     founders_child = (parent_branch.hi | parent_branch.lo) == 0
     branch = select(founders_child, births.number.plus(jnp.ones_like(newborn)), parent_branch)
     branch = select(births.founded, zero(newborn.shape), branch)
+    memory = first_memory(law, organisms.memory[births.parent], _founders(law, births))
     return organisms._replace(
         alive=alive,
-        memory=jnp.where(newborn[:, None], 0, organisms.memory),
+        memory=jnp.where(newborn[:, None], memory, organisms.memory),
         energy=jnp.where(newborn, births.energy, organisms.energy),
         eaten=jnp.where(newborn, 0, organisms.eaten),
         born=select(newborn, worlds.tick.map(law.per_cell), organisms.born),

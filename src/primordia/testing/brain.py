@@ -44,6 +44,7 @@ def check_brain(brain: Brain, senses: int = 33, outputs: int = 5) -> None:
         memory, output = think(genome, memory, seen[tick])
         same(brain, output, outputs_[tick], f"in a compiled loop{SUMMED}")
     same(brain, memory, remembered, f"in a compiled loop{SUMMED}")
+    _passes_on_the_same(brain, memory, senses, outputs)
     advise(brain)
 
 
@@ -91,6 +92,15 @@ def _depends_on_its_own_only(
     beside = jit(lambda *given: brain(*given))(broken, memory, seen)
     says = "when organism 0 has another genome; sum nothing over the first axis, that of organisms"
     same(brain, last(whole, ALL - 1), last(beside, ALL - 1), says, 1)
+
+
+def _passes_on_the_same(brain: Brain, memory: Array, senses: int, outputs: int) -> None:
+    """Compare what children inherit from all parents with what they inherit from a few."""
+    pass_on = jit(lambda memory: brain.passed_on(memory, senses, outputs))
+    whole = pass_on(memory)
+    for count in COUNTS:
+        says = f"when {count} instead of {ALL} pass on their memories"
+        same(brain, last(whole, count), pass_on(last(memory, count)), says, ALL - count)
 
 
 def _thoughts(brain: Brain, genome: Genome, memory: Array, seen: Array) -> tuple[Array, Array]:

@@ -1,13 +1,15 @@
 """A life lived again, tick for tick.
 
 A life is a function of the organism's genome, the world's seed, and the tick and cell of birth (the
-first promise). So the neighbours need not live again.
+first promise). So the neighbours need not live again. If children inherit memory, the ancestors must:
+a life is then also a function of its parent's memory at the birth.
 """
 
 from collections.abc import Generator, Mapping
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import jax
@@ -26,12 +28,13 @@ from primordia.history.climate import PastClimate
 from primordia.history.rebuilding import rebuild
 from primordia.law.genesis import body_words
 from primordia.law.law import Law
-from primordia.law.life import BODILY, Vitals
+from primordia.law.life import BODILY, Vitals, first_memory, inherits_memory
 from primordia.law.metabolism import ONE, Rates, to_fixed_point
 from primordia.law.world import Cause, Climate
 from primordia.organism.mind import Mind
 from primordia.organism.reliving.in_jax import LifeInJax
 from primordia.organism.reliving.instant import Instant, Stretch
+from primordia.organism.reliving.line import is_older, line_of
 from primordia.organism.reliving.on_host import LifeOnHost
 from primordia.progress import steps
 from primordia.random.keys import Purpose, bits, chance, stream
@@ -42,6 +45,9 @@ from primordia.runs.records import Records
 
 ALONE = (*BODILY, Cause.HAZARD)
 """Causes of death that are found when a life is lived alone: all but a neighbour's child and a resume."""
+
+SHORT = 256
+"""Ticks of one stretch of an ancestor's life, which ends soon: every tick of a stretch is computed."""
 
 
 @dataclass(frozen=True)
@@ -59,6 +65,8 @@ class RelivedLife:
     """a single row"""
     stored: Mapping[str, np.ndarray] | None
     """arrays of the state in which the relived life begins; None: it begins with the birth"""
+    first: Array | None = None
+    """the memory at birth, float32 (1, M), if it is known"""
 
     @classmethod
     def of(
@@ -81,18 +89,29 @@ class RelivedLife:
         Raises:
             InputError: no such organism was born, or its life cannot be lived again.
         """
-        habitat, law, row = run.habitat, run.law, run.lives.row(organism, world)
-        record, fork = run.lives.take(np.array([row])), run.config.fork
-        begin = "the checkpoint"
-        if stored is None and fork is not None and int(record.born[0]) <= fork.tick:
+        record = run.lives.take(np.array([run.lives.row(organism, world)]))
+        genome = rebuild(run, organism, world)
+        return cls._of_record(run, record, genome, stored)
+
+    @classmethod
+    def _of_record(
+        cls,
+        run: Records,
+        record: Lives,
+        genome: np.ndarray,
+        stored: Mapping[str, np.ndarray] | None = None,
+    ) -> "RelivedLife":
+        """Prepare a life from its record, a single row, and its genome, float32 (P,); see `of`."""
+        habitat, law, begin = run.habitat, run.law, "the checkpoint"
+        if stored is None and is_older(run, record)[0]:
             stored, begin = run.origin, "the fork"
         if stored is not None and not habitat.exact:
             raise InputError(
-                f"{run.path}: organism {organism} is older than {begin}, and the habitat cannot"
+                f"{run.path}: organism {record.id[0]} is older than {begin}, and the habitat cannot"
                 " save bodies"
             )
-        genome = law.heredity.layout.split(jnp.asarray(rebuild(run, organism, world)[None]))
-        return cls(run, run.config, law, habitat, genome, record, stored)
+        blocks = law.heredity.layout.split(jnp.asarray(genome[None]))
+        return cls(run, run.config, law, habitat, blocks, record, stored)
 
     @property
     def world(self) -> int:
@@ -116,12 +135,33 @@ class RelivedLife:
         """The cause of death; None if the organism is alive."""
         return Cause(self.record.cause[0]) if self.record.died[0] else None
 
-    @property
+    @cached_property
     def memory(self) -> Array:
-        """The memory with which the relived life begins, float32 (1, M)."""
-        if self.stored is None:
-            return jnp.zeros((1, self.law.memory), jnp.float32)
-        return self._own(self.stored, "memory")
+        """The memory with which the relived life begins, float32 (1, M).
+
+        If it is inherited, the ancestors live again, each up to the birth of the next one, from the
+        founder or from the fork on.
+        """
+        if self.stored is not None:
+            return self._own(self.stored, "memory")
+        if self.first is not None:
+            return self.first
+        of = line_of(self.run, self.record) if inherits_memory(self.law) else []
+        line = [*(self._of_record(self.run, *each) for each in of), self]
+        memory, a_child = jnp.zeros((1, self.law.memory), jnp.float32), np.zeros(1, bool)
+        for parent, child in steps(list(pairwise(line)), "living ancestors again"):
+            own = memory if parent.stored is None else None
+            at_birth = replace(parent, first=own)._memory_at(child.begins)
+            memory = shared(first_memory, self.law)(at_birth, a_child)
+        return memory
+
+    def _memory_at(self, tick: int) -> Array:
+        """Live the life up to a tick, as recorded. Return the memory at its end, float32 (1, M)."""
+        for held, stretch in self.instants(until=tick):
+            memory = held["world.organisms.memory"]
+            if stretch is not None:
+                self._check(stretch)
+        return jnp.asarray(memory)
 
     def stretches(self, watched: bool = False) -> Generator[Stretch, None, None]:
         """Live the whole life in order, and yield it some ticks at a time.
@@ -138,9 +178,13 @@ class RelivedLife:
                 yield stretch
 
     def instants(
-        self, watched: bool = False
+        self, watched: bool = False, until: int | None = None
     ) -> Generator[tuple[dict[str, np.ndarray], Stretch | None], None, None]:
         """Live the life up to its recorded end or an earlier death, without comparing it with the record.
+
+        Args:
+            watched: as in `stretches`.
+            until: the last tick to live; by default the recorded end.
 
         Yields:
             Two values, at first and after each stretch. The first value holds the memory, the
@@ -151,10 +195,11 @@ class RelivedLife:
         with closing(self._alone(watched)) as alone:
             instant = self._start(alone)
             yield _as_stored(alone, instant), None
-            for first in steps(range(self.begins, self.ends, alone.TICKS), "living again"):
-                ticks = first + 1 + np.arange(alone.TICKS)
+            ends, most = (self.ends, alone.TICKS) if until is None else (until, SHORT)
+            for first in steps(range(self.begins, ends, most), "living again"):
+                ticks = first + 1 + np.arange(most)
                 climate = self._climate(ticks)
-                count = min(alone.TICKS, self.ends - first)
+                count = min(most, ends - first)
                 given = self._given(ticks)
                 instant, stretch = alone.live(instant, ticks, Rates.of(climate), given, count)
                 stretch = self._with_accidents(stretch, ticks, climate)
