@@ -160,7 +160,11 @@ class Config(Settings):
     def build_brain(self, habitat: AnyHabitat) -> Brain:
         """Return the brain of the organisms that live in the habitat."""
         brain = make("brain", self.brain, brains.find)
-        return Efferent(inner=brain, action=habitat.action) if brain.efference else brain
+        if not brain.efference:
+            return brain
+        return Efferent(
+            inner=brain, action=habitat.action, interoception=brain.interoception, efference=True
+        )
 
     def sizes(self, habitat: AnyHabitat) -> tuple[int, int]:
         """Return the numbers of senses and of outputs of a brain that lives in the habitat."""
