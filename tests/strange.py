@@ -66,7 +66,7 @@ BLOCKS: dict[str, Any] = {
 """One parent, and settings of mutation for each block."""
 GIVING: dict[str, Any] = {
     **STRANGE,
-    "brain": {"hidden": 3, "interoception": True, "efference": True},
+    "brain": {"hidden": 3, "interoception": True},
     "replication": {"kind": "act", "price": 0.3},
     "metabolism": {**MILL["metabolism"], "gain": 6.0, "drain": 0.7},
     "hazard": 0.03,

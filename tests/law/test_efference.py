@@ -13,6 +13,7 @@ from primordia.brains.plastic import Plastic
 from primordia.config import load
 from primordia.habitats.contract import Compound, Continuous, Discrete
 from primordia.law.efference import Efferent
+from primordia.law.metabolism import ONE
 from primordia.testing import check_brain
 
 SENSES = 2
@@ -108,3 +109,11 @@ def test_every_brain_has_the_setting() -> None:
     laws = [each.build_law(each.build_habitat()) for each in made]
     assert [law.heredity.layout.length for law in laws] == [4 * 2, (4 + 4 + 2) * 2]
     assert [law.memory for law in laws] == [0, 4 + 2]
+
+
+def test_energy_is_perceived_beside_an_efference_copy() -> None:
+    brain = {"kind": "plastic", "efference": True, "interoception": True}
+    settings = load("CartPole-survival", {"brain": brain, "metabolism": {"store": 4.0}})
+    law = settings.build_law(settings.build_habitat())
+    perceived = law.perceived(jnp.zeros((1, law.senses - 1)), jnp.array([2 * ONE]))
+    np.testing.assert_array_equal(perceived, [[0, 0, 0, 0, 0.5]])
