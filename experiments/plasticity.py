@@ -47,7 +47,9 @@ def worlds_of(run: Records) -> list[dict[str, Any]]:
     for world in range(run.config.seeds):
         own = np.flatnonzero(late & (lives.world == world))
         some = own[:: max(1, len(own) // ORGANISMS)][:ORGANISMS]
-        (learns, lived), (drifts, _) = (learning(run, some, redrawn) for redrawn in (False, True))
+        (learns, lived), (drifts, _) = (
+            learning(players_of(run, some, redrawn)) for redrawn in (False, True)
+        )
         rows.append(
             {
                 "seed": int(run.world_seeds[world]),
@@ -61,15 +63,20 @@ def worlds_of(run: Records) -> list[dict[str, Any]]:
     return rows
 
 
-def learning(run: Records, rows: np.ndarray, redrawn: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Return the changes of fast weights in a tick, and the ticks lived: float64 (K,) each."""
-    lives, law = run.lives.take(rows), run.law
+def players_of(run: Records, rows: np.ndarray, redrawn: bool) -> Players:
+    """Return organisms, or their neutral shadows if `redrawn`, as players with fresh keys."""
+    lives = run.lives.take(rows)
     keys = stream(wide(run.world_seeds[lives.world]), Purpose.REBIRTH, wide(lives.id))
     rates = Rates.of(jax.tree.map(jnp.asarray, PastClimate(run).of_lives(lives, lives.born)))
     genomes = pedigree.genomes(run, rows, redrawn)
-    players = Players(law, run.config.build_habitat(), genomes, keys, rates)
+    return Players(run.law, run.config.build_habitat(), genomes, keys, rates)
+
+
+def learning(players: Players) -> tuple[np.ndarray, np.ndarray]:
+    """Return the changes of fast weights in a tick, and the ticks lived: float64 (K,) each."""
+    law, count = players.law, len(players.genomes)
     priced = law.brain.model_copy(update={"price": 1.0})
-    total, ticks, last = np.zeros(len(rows)), np.zeros(len(rows)), None
+    total, ticks, last = np.zeros(count), np.zeros(count), None
     for part in stretches(players, 1, Manner(TICKS, watched=True)):
         assert part.met is not None
         for playing, memory in zip(part.playing, np.asarray(part.met.memory), strict=True):
