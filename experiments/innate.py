@@ -32,6 +32,12 @@ REVERSED = {"kind": "reverse-actions", "at": [1]}
 LIVED, INNATE, OTHER = "ticks lived", "without plasticity", "choices reversed"
 LEARNING, SHADOWS = "learning", "shadows without plasticity"
 COLUMNS = LIVED, INNATE, OTHER, LEARNING, SHADOWS
+PANELS = {
+    LIVED: "Ticks lived",
+    OTHER: "Ticks lived, choices reversed",
+    INNATE: "Ticks lived without plasticity",
+    LEARNING: "Learning in a tick",
+}
 
 NOTE = (
     f"Ticks lived in games of at most {TICKS:,} ticks without changes, hunger and accidents: means of"
@@ -106,14 +112,14 @@ def drawn(rows: pd.DataFrame) -> Figure:
     panels = figure.subplots(2, 2, sharex=True).flat
     edges = rows["born"].str.replace(",", "").str.split(" to ", expand=True).astype(float)
     rows = rows.assign(time=edges.mean(axis=1))
-    for axes, name in zip(panels, (LIVED, OTHER, INNATE, LEARNING), strict=True):
+    for axes, (name, title) in zip(panels, PANELS.items(), strict=True):
         for (arm, own), colour in zip(rows.groupby("arm", sort=False), style.PALETTE, strict=False):
             quartiles = own.groupby("time")[name].quantile([0.25, 0.5, 0.75]).unstack()
             axes.plot(quartiles[0.5], color=colour, marker="o", markersize=3, label=arm)
             axes.fill_between(
                 quartiles.index, quartiles[0.25], quartiles[0.75], color=colour, alpha=0.15, lw=0
             )
-        axes.set_title(name[0].upper() + name[1:])
+        axes.set_title(title)
         axes.set_ylim(0)
         style.linear(axes.xaxis)
     for axes in figure.axes[2:]:
