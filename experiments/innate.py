@@ -5,7 +5,8 @@
 The experiment must have been run (`primordia experiment`). Its time is cut into WINDOWS; in each of them
 ORGANISMS organisms that were born there live again, alone, in a game of at most TICKS ticks that does not
 change, without hunger and accidents. The same organisms live in that game without plasticity, and with
-plasticity in a game whose choices are in reverse order. The neutral shadow of an organism has its
+plasticity in a game whose choices are in reverse order. If fast weights follow experience, they have
+the opposite sign there. The neutral shadow of an organism has its
 pedigree, and as many mutations, but no selection. A table and a figure go to `results/` beside the file.
 """
 
@@ -14,24 +15,26 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+import jax.numpy as jnp
 import named
 import numpy as np
 import pandas as pd
 from by_world import Row, measure
 from matplotlib.figure import Figure
-from plasticity import learning, players_of
+from plasticity import learning, memories, players_of
 
 from primordia.assays.subjects import spaced
 from primordia.figures import style
 from primordia.habitats.contract import AnyHabitat
-from primordia.organism.playing.games import lifespans
+from primordia.law.law import Law
+from primordia.organism.playing.games import Players, lifespans
 from primordia.runs.records import Records
 
-WINDOWS, ORGANISMS, TICKS = 6, 20, 2_000
+WINDOWS, ORGANISMS, TICKS, FIRST = 6, 20, 2_000, 50
 REVERSED = {"kind": "reverse-actions", "at": [1]}
 LIVED, INNATE, OTHER = "ticks lived", "without plasticity", "choices reversed"
-LEARNING, SHADOWS = "learning", "shadows without plasticity"
-COLUMNS = LIVED, INNATE, OTHER, LEARNING, SHADOWS
+LEARNING, AGREEMENT, SHADOWS = "learning", "agreement", "shadows without plasticity"
+COLUMNS = LIVED, INNATE, OTHER, LEARNING, AGREEMENT, SHADOWS
 PANELS = {
     LIVED: "Ticks lived",
     OTHER: "Ticks lived, choices reversed",
@@ -43,7 +46,9 @@ NOTE = (
     f"Ticks lived in games of at most {TICKS:,} ticks without changes, hunger and accidents: means of"
     f" {ORGANISMS} organisms born in a sixth of the time. Choices reversed: with plasticity; choices are"
     " counted from the last one after the first tick. Learning: changes of all fast weights in a tick of"
-    " the first of these games. Shadows: neutral shadows of the organisms."
+    " the first of these games. Agreement: cosine of the angle between an organism's mean fast weights in"
+    f" the game and in that with choices reversed, in the first {FIRST} ticks in which it lives in both:"
+    " -1 if fast weights follow experience alone, 1 if they do not. Shadows: neutral shadows."
 )
 
 
@@ -96,8 +101,25 @@ def games_of(run: Records, rows: np.ndarray) -> dict[str, np.ndarray]:
         found[INNATE], found[SHADOWS] = (
             lifespans(each._replace(law=law), TICKS) for each in (real, shadows)
         )
-        found[LEARNING] = learning(real)[0]
+        found[LEARNING], found[AGREEMENT] = learning(real)[0], agreement(real, other)
     return found
+
+
+def agreement(one: Players, other: Players) -> np.ndarray:
+    """Return the cosine of the angle between fast weights in two games, float64 (K,)."""
+    sums = np.zeros((2, 1, 1))
+    for both in zip(memories(one, FIRST), memories(other, FIRST), strict=False):
+        live = both[0][0] & both[1][0]
+        fast = np.array([fast_weights(one.law, memory) for _, memory in both])
+        sums = sums + np.where(live[:, None], fast, 0)
+    lengths = np.linalg.norm(sums, axis=2).prod(axis=0)
+    return sums.prod(axis=0).sum(axis=1) / np.maximum(lengths, 1e-9)
+
+
+def fast_weights(law: Law, memory: np.ndarray) -> np.ndarray:
+    """Return fast weights as shares of their bound, float64 (K, n)."""
+    pictured = law.brain.pictured(jnp.asarray(memory), law.senses, law.outputs)
+    return np.asarray(pictured["fast weights"], float).reshape(len(memory), -1)
 
 
 def unchanging(run: Records, *first: dict[str, Any]) -> AnyHabitat:

@@ -8,6 +8,7 @@ shadow of an organism has its pedigree, and as many mutations, but no selection.
 `results/` beside the file, as Markdown and CSV.
 """
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -77,19 +78,22 @@ def learning(players: Players) -> tuple[np.ndarray, np.ndarray]:
     law, count = players.law, len(players.genomes)
     priced = law.brain.model_copy(update={"price": 1.0})
     total, ticks, last = np.zeros(count), np.zeros(count), None
-    for part in stretches(players, 1, Manner(TICKS, watched=True)):
+    for playing, memory in memories(players, TICKS):
+        if last is not None:
+            spent = priced.spent(jnp.asarray(last), jnp.asarray(memory), law.senses, law.outputs)
+            total += np.where(playing, np.asarray(spent), 0)
+            ticks += playing
+        last = memory
+    return total / np.maximum(ticks, 1), ticks + 1
+
+
+def memories(players: Players, ticks: int) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Yield who plays in each tick of a game, bool (K,), and the memories, float32 (K, M)."""
+    for part in stretches(players, 1, Manner(ticks, watched=True)):
         assert part.met is not None
-        for playing, memory in zip(part.playing, np.asarray(part.met.memory), strict=True):
-            if last is not None:
-                spent = priced.spent(
-                    jnp.asarray(last), jnp.asarray(memory), law.senses, law.outputs
-                )
-                total += np.where(playing, np.asarray(spent), 0)
-                ticks += playing
-            last = memory
+        yield from zip(part.playing, np.asarray(part.met.memory), strict=True)
         if not part.alive.any():
             break
-    return total / np.maximum(ticks, 1), ticks + 1
 
 
 if __name__ == "__main__":
