@@ -23,8 +23,8 @@ from primordia.runs.records import Records
 LATE = 0.75
 NOTE = (
     "Late: from the tick on at which three quarters of a world's births have happened. Endowment: mean"
-    " energy with which organisms begin that are born then. Tries: all that an organism makes, for each"
-    " birth; by chance each is free."
+    " energy with which children begin that are born then. Tries: of all organisms, for each"
+    " child that is born."
 )
 
 
@@ -37,9 +37,10 @@ def worlds_of(run: Records) -> list[dict[str, Any]]:
     """Return a row for each world."""
     food, known = harvests(run, run.config.seeds), info(run)["worlds"]
     given = None if run.config.act is None else run.endowments_of(run.lives) / ONE
-    late, rows = run.lives.late(LATE) & (run.lives.parent >= 0), []
+    late, rows = run.lives.late(LATE), []
     for world, lives in enumerate(run.lives.by_world()):
         own = late & (run.lives.world == world)
+        children = own & (run.lives.parent >= 0)
         begin, end = int(run.lives.born[own].min()), int(run.ends[world])
         dying = pace([lives], begin, end)
         act = known[world].get("act")
@@ -53,10 +54,12 @@ def worlds_of(run: Records) -> list[dict[str, Any]]:
                 "late food in a tick": round(
                     float(food[world].between(np.array([begin, end]))[0]), 3
                 ),
-                "late endowment": "" if given is None else round(float(given[own].mean()), 2),
-                "tries for each birth": ""
+                "late endowment": ""
+                if given is None or not children.any()
+                else round(float(given[children].mean()), 2),
+                "tries for each child": ""
                 if act is None
-                else round(act["tries"] / act["children"], 2),
+                else round(act["tries"] / max(act["children"], 1), 2),
             }
         )
     return rows
