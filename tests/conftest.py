@@ -25,7 +25,10 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 os.environ["PYTHONPATH"] = commands.TREE
 
 # A slow test is not a wrong test: the machine may be busy, and garbage collection takes up to 0.3 s.
-settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+# Each run of the tests generates other examples.
+settings.register_profile(
+    "patient", deadline=None, max_examples=40, suppress_health_check=[HealthCheck.too_slow]
+)
 settings.load_profile("patient")
 
 

@@ -118,6 +118,7 @@ print(fingerprint())
 """
 
 
+@pytest.mark.slow
 def test_brains_think_the_same_on_any_number_of_threads() -> None:
     if not hasattr(os, "sched_setaffinity") or len(os.sched_getaffinity(0)) < 2:
         pytest.skip("needs Linux and two processors")

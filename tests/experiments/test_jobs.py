@@ -48,6 +48,7 @@ def alone(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[str]]:
     }
 
 
+@pytest.mark.slow
 def test_jobs_in_any_order_make_the_worlds_of_one_run(
     tmp_path: Path, alone: dict[str, list[str]]
 ) -> None:

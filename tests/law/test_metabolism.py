@@ -84,7 +84,7 @@ energies = st.lists(
 )
 
 
-@settings(max_examples=150)
+@settings(max_examples=50)
 @given(energies, numbers, numbers, rate, rate, rate, rate)
 def test_a_tick_changes_energy_as_exact_arithmetic_does(
     energy: list[int],

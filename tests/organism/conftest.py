@@ -10,7 +10,7 @@ from primordia.organism.playing import in_jax
 from primordia.organism.reliving.in_jax import LifeInJax
 from primordia.organism.reliving.on_host import LifeOnHost
 from primordia.runs import loop
-from tests.worlds import MILLS, config
+from tests.worlds import LEARNERS, MILLS, config
 
 CALM = {"hazard": 0.002}
 """A chance of accidents with which organisms of MILLS live longer."""
@@ -66,9 +66,5 @@ def poles(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def learners(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Make a world of poles with plastic brains, whose buttons swap at the ages 6, 17 and 40."""
     run = tmp_path_factory.mktemp("learners") / "run"
-    change = [{"kind": "reverse-actions", "at": [6, 17, 40]}]
-    brain, stop = {"kind": "plastic", "hidden": 3}, {"ticks": 90, "until": "none"}
-    many = {"cells": 8, "seed": 2, "genesis": "fill", "replication": 0.1}
-    settings = config(habitat={"change": change}, brain=brain, stop=stop, **many)
-    loop.start(settings, run)
+    loop.start(config(**LEARNERS, stop={"ticks": 90, "until": "none"}), run)
     return run
