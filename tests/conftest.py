@@ -1,6 +1,7 @@
 """Set-up of all tests: JAX, Hypothesis, and a shared cache of compiled code."""
 
 import os
+from collections.abc import Iterator
 
 import jax
 import pytest
@@ -8,6 +9,8 @@ from hypothesis import HealthCheck, settings
 
 from primordia import device
 from primordia.doctor import memo
+from primordia.history import pedigree
+from primordia.organism.playing import in_jax
 from tests import commands
 
 device.prepare()
@@ -50,6 +53,19 @@ def _compiled_code(tmp_path_factory: pytest.TempPathFactory) -> None:
     os.environ["XDG_STATE_HOME"] = str(shared / "state")
     os.environ["XDG_CACHE_HOME"] = str(shared / "cache")
     memo.remember(passed=True)
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _one_size() -> Iterator[None]:
+    """Repeat births and play games in calls of one size, since each size is compiled.
+
+    `test_batches` and `test_playing` have several sizes.
+    """
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(in_jax, "FEWEST", 64)
+        for name in ("FEW", "AT_ONCE"):
+            patch.setattr(pedigree, name, 32)
+        yield
 
 
 @pytest.fixture

@@ -38,7 +38,6 @@ def test_jumps_are_found_where_they_are_and_nowhere_else(jumps: Any) -> None:
     assert len(parted(np.arange(19.0)).ends) == 1
 
 
-@pytest.mark.slow
 def test_a_smooth_rise_has_no_sudden_jumps_and_a_step_has_one(jumps: Any) -> None:
     """Both have jumps, since a staircase is fitted to a smooth rise too."""
     noise, at = np.random.default_rng(5), np.linspace(0, 1, 300)

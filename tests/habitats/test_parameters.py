@@ -215,6 +215,7 @@ def _rebuild(habitat: MuJoCo, factors: np.ndarray) -> None:
     habitat.load(state)
 
 
+@pytest.mark.slow
 def test_robots_with_changing_parameters_keep_the_contract(tmp_path: Path) -> None:
     """Forces and accelerations, which depend on gravity and mass, are exact after a resume too."""
     heavy = {"kind": "parameter", "of": ["gravity", "mass"], "range": [0.5, 2.0], "every": [2, 9]}

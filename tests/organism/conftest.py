@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 
 import primordia
-from primordia.organism.playing import in_jax
 from primordia.organism.reliving.in_jax import LifeInJax
 from primordia.organism.reliving.on_host import LifeOnHost
 from primordia.runs import loop
@@ -19,12 +18,8 @@ CLOCKED = {"name": "tests.toys:Clocked", "inner": "mill"}
 
 @pytest.fixture(scope="package", autouse=True)
 def _short_stretches() -> Iterator[None]:
-    """Live lives again in short stretches, so that most lives take several.
-
-    Few games are played in loops of the size of many, so that few loops are compiled.
-    """
+    """Live lives again in short stretches, so that most lives take several."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(in_jax, "FEWEST", 64)
         patch.setattr(LifeInJax, "TICKS", 512)
         patch.setattr(LifeOnHost, "TICKS", 20)
         yield

@@ -40,7 +40,7 @@ def file(run: Path) -> Path:
     return primordia.load(run).bundle(run.parent / "sent" / "run.zip")
 
 
-@pytest.mark.parametrize("which", ["run", pytest.param("fork", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("which", ["run", "fork"])
 def test_a_bundle_is_the_run_again(
     which: str, request: pytest.FixtureRequest, tmp_path: Path
 ) -> None:

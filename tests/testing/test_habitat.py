@@ -23,7 +23,6 @@ def test_habitats_that_keep_their_contract(habitat: Any) -> None:
     check_habitat(habitat)
 
 
-@pytest.mark.slow
 def test_robots_keep_the_contract() -> None:
     pytest.importorskip("mujoco")
     check_habitat(load("Reacher-forager").build_habitat())
