@@ -1,6 +1,7 @@
 """Set-up of all tests: JAX, Hypothesis, and a shared cache of compiled code."""
 
 import os
+from collections.abc import Iterator
 
 import jax
 import pytest
@@ -8,6 +9,8 @@ from hypothesis import HealthCheck, settings
 
 from primordia import device
 from primordia.doctor import memo
+from primordia.history import pedigree
+from primordia.organism.playing import in_jax
 from tests import commands
 
 device.prepare()
@@ -25,7 +28,10 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 os.environ["PYTHONPATH"] = commands.TREE
 
 # A slow test is not a wrong test: the machine may be busy, and garbage collection takes up to 0.3 s.
-settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+# Each run of the tests generates other examples.
+settings.register_profile(
+    "patient", deadline=None, max_examples=40, suppress_health_check=[HealthCheck.too_slow]
+)
 settings.load_profile("patient")
 
 
@@ -47,6 +53,19 @@ def _compiled_code(tmp_path_factory: pytest.TempPathFactory) -> None:
     os.environ["XDG_STATE_HOME"] = str(shared / "state")
     os.environ["XDG_CACHE_HOME"] = str(shared / "cache")
     memo.remember(passed=True)
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _one_size() -> Iterator[None]:
+    """Repeat births and play games in calls of one size, since each size is compiled.
+
+    `test_batches` and `test_playing` have several sizes.
+    """
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(in_jax, "FEWEST", 64)
+        for name in ("FEW", "AT_ONCE"):
+            patch.setattr(pedigree, name, 32)
+        yield
 
 
 @pytest.fixture

@@ -107,6 +107,16 @@ HOSTED: dict[str, Any] = {
 """A law for habitats on the host. None starves who makes no effort. Where there are two senses and one
 number to put out, all worlds share its compiled code."""
 
+LEARNERS: dict[str, Any] = {
+    "habitat": {"change": [{"kind": "reverse-actions", "at": [6, 17, 40]}]},
+    "brain": {"kind": "plastic", "hidden": 3},
+    "cells": 8,
+    "seed": 2,
+    "genesis": "fill",
+    "replication": 0.1,
+}
+"""Settings of CartPole with plastic brains, whose buttons swap at the ages 6, 17 and 40."""
+
 
 def config(base: str | dict[str, Any] = "CartPole-survival", **settings: Any) -> Config:
     """Return the settings of a task, given by name or as values, with some of them changed."""

@@ -1,21 +1,10 @@
 """A run whose organisms live again."""
 
-from collections.abc import Iterator
-
 import pytest
 
 import primordia
-from primordia.organism.playing import in_jax
 from primordia.runs import loop
 from tests.worlds import config
-
-
-@pytest.fixture(scope="package", autouse=True)
-def _loops_of_few_sizes() -> Iterator[None]:
-    """Play few games in loops of the size of many, so that few loops are compiled."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(in_jax, "FEWEST", 64)
-        yield
 
 
 @pytest.fixture(scope="session")

@@ -50,6 +50,8 @@ BRAINS = {name: build(table) for name, table in TABLES.items()}
 SENSES, OUTPUTS, MOST, TICKS = 5, 3, 1024, 6
 
 QUICK = ("recurrent, biases", "feed-forward, biases", "gated, biases", "linear, biases", "plastic")
+CHECKED = ("gated, biases", "linear, biases", "plastic")
+"""`tests/engine/test_exactness.py` has brains of the other kinds."""
 each_brain = pytest.mark.parametrize(
     "brain",
     [
@@ -82,7 +84,13 @@ def thought(brain: Brain, genome: Any, memory: Any, senses: Any) -> tuple:
     return brain(genome, memory, senses)
 
 
-@each_brain
+@pytest.mark.parametrize(
+    "brain",
+    [
+        pytest.param(brain, id=name, marks=() if name in CHECKED else pytest.mark.slow)
+        for name, brain in BRAINS.items()
+    ],
+)
 def test_a_brain_keeps_the_contract(brain: Brain) -> None:
     check_brain(brain, SENSES, OUTPUTS)
 
@@ -118,6 +126,7 @@ print(fingerprint())
 """
 
 
+@pytest.mark.slow
 def test_brains_think_the_same_on_any_number_of_threads() -> None:
     if not hasattr(os, "sched_setaffinity") or len(os.sched_getaffinity(0)) < 2:
         pytest.skip("needs Linux and two processors")

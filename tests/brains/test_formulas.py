@@ -112,9 +112,15 @@ def rows(block: np.ndarray, hidden: int) -> np.ndarray:
     return (block if inputs_first else block.transpose(0, 2, 1)).astype(float)
 
 
-@pytest.mark.parametrize("hidden", [2, 12])
-@pytest.mark.parametrize("coefficients", ["connection", "layer"])
-@pytest.mark.parametrize("activity", ["winner", "graded"])
+@pytest.mark.parametrize(
+    ("hidden", "coefficients", "activity"),
+    [
+        (2, "connection", "winner"),
+        (12, "layer", "graded"),
+        pytest.param(12, "connection", "graded", marks=pytest.mark.slow),
+        pytest.param(2, "layer", "winner", marks=pytest.mark.slow),
+    ],
+)
 def test_the_plastic_brain_follows_its_formula(
     hidden: int, coefficients: Any, activity: Any
 ) -> None:

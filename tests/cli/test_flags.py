@@ -21,7 +21,7 @@ from primordia.settings.fields import setting_fields
 from tests.commands import complains, here
 from tests.trouble import TASK
 
-SOME = settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
+SOME = settings(max_examples=50, suppress_health_check=[HealthCheck.function_scoped_fixture])
 THOUSANDS = settings(SOME, max_examples=5000)
 
 

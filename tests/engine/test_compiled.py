@@ -42,6 +42,8 @@ def test_a_run_with_another_seed_and_end_compiles_nothing(
     caplog: pytest.LogCaptureFixture,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    """A run with other chances compiles nothing but its worlds at the beginning."""
+
     def live(name: str, **settings: Any) -> None:
         loop.start(config({**base, **settings}), tmp_path / name)
 
@@ -52,7 +54,9 @@ def test_a_run_with_another_seed_and_end_compiles_nothing(
         caplog.clear()
         live("second", seed=2, stop={"ticks": 55})
         loop.resume(tmp_path / "first", {"ticks": 60})
-    assert compilations(caplog) == []
+        assert compilations(caplog) == []
+        live("third", replication=0.1, hazard=0.03, stop={"ticks": 40})
+    assert all("empty_worlds" in message for message in compilations(caplog))
 
 
 def test_a_class_with_the_same_name_and_settings_shares_no_code() -> None:

@@ -48,6 +48,7 @@ def alone(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[str]]:
     }
 
 
+@pytest.mark.slow
 def test_jobs_in_any_order_make_the_worlds_of_one_run(
     tmp_path: Path, alone: dict[str, list[str]]
 ) -> None:
@@ -59,6 +60,24 @@ def test_jobs_in_any_order_make_the_worlds_of_one_run(
         done = here("experiment", file, "--out", out, "--job", number, "--quiet")
         assert done.returncode == 0, done.stderr
     assert digests_of(begin(out)) == alone
+
+
+def test_what_a_kill_leaves_is_taken_up(tmp_path: Path, alone: dict[str, list[str]]) -> None:
+    """A folder in which a run was about to begin, and a run in the middle of its life.
+
+    The processes of the next test find the code of these jobs.
+    """
+    chosen = begin(write(tmp_path), tmp_path / "out")
+    half = chosen.path / chosen.jobs[0].folder
+    (half / "births").mkdir(parents=True)
+    (half / "config.toml").write_text("begun")
+    (half / directory.UNBEGUN).touch()
+    config = jobs.configuration(chosen.plan, chosen.jobs[1])
+    part = config.model_copy(update={"stop": config.stop.model_copy(update={"ticks": 77})})
+    loop.start(part, chosen.path / chosen.jobs[1].folder)
+    for job in chosen.jobs:
+        assert jobs.ending_of(chosen.plan, job, chosen.path) == Ending(job.number, "done")
+    assert digests_of(begin(chosen.path)) == alone
 
 
 def test_an_experiment_is_run_once_on_all_cores_though_processes_die(
@@ -132,21 +151,6 @@ def test_a_fork_goes_on_from_the_worlds_of_an_arm(tmp_path: Path) -> None:
     )
     assert by_place.plan.arms == two.plan.arms
     assert [job.worlds for job in by_place.jobs] == [job.worlds for job in two.jobs]
-
-
-def test_what_a_kill_leaves_is_taken_up(tmp_path: Path, alone: dict[str, list[str]]) -> None:
-    """A folder in which a run was about to begin, and a run in the middle of its life."""
-    chosen = begin(write(tmp_path), tmp_path / "out")
-    half = chosen.path / chosen.jobs[0].folder
-    (half / "births").mkdir(parents=True)
-    (half / "config.toml").write_text("begun")
-    (half / directory.UNBEGUN).touch()
-    config = jobs.configuration(chosen.plan, chosen.jobs[1])
-    part = config.model_copy(update={"stop": config.stop.model_copy(update={"ticks": 77})})
-    loop.start(part, chosen.path / chosen.jobs[1].folder)
-    for job in chosen.jobs:
-        assert jobs.ending_of(chosen.plan, job, chosen.path) == Ending(job.number, "done")
-    assert digests_of(begin(chosen.path)) == alone
 
 
 @pytest.mark.slow

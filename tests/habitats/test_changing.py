@@ -176,6 +176,7 @@ def test_habitats_that_change_keep_the_contract() -> None:
     check_habitat(config(MILL, habitat=table, motor={"kind": "direct"}).build_habitat())
 
 
+@pytest.mark.slow
 def test_a_run_is_the_same_in_jax_and_on_the_host() -> None:
     """Chunks of other lengths and a life on the host change nothing."""
     change, many = {"change": [PERMUTED, INVERTED]}, {"replication": 0.3}

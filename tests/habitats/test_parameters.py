@@ -7,7 +7,6 @@ import gymnasium
 import jax
 import numpy as np
 import pytest
-from jax import Array
 
 from primordia.compiled import shared
 from primordia.config import load
@@ -21,7 +20,7 @@ from primordia.habitats.mujoco.habitat import MuJoCo
 from primordia.habitats.on_host import OnHost
 from primordia.testing import ContractError, check_habitat
 from tests.robots import SENSES, write_model
-from tests.toys import Mill
+from tests.toys import HostCartPole, Mill
 from tests.worlds import Lived
 
 BODIES, TICKS = 48, 60
@@ -216,6 +215,7 @@ def _rebuild(habitat: MuJoCo, factors: np.ndarray) -> None:
     habitat.load(state)
 
 
+@pytest.mark.slow
 def test_robots_with_changing_parameters_keep_the_contract(tmp_path: Path) -> None:
     """Forces and accelerations, which depend on gravity and mass, are exact after a resume too."""
     heavy = {"kind": "parameter", "of": ["gravity", "mass"], "range": [0.5, 2.0], "every": [2, 9]}
@@ -234,9 +234,11 @@ def test_an_environment_offers_the_numbers_that_its_steps_use() -> None:
     words, action = WORDS[:, :2], RNG.normal(size=(BODIES, 2)).astype(np.float32)
     factors = np.where(np.arange(BODIES) % 2, 3.0, 1.0).astype(np.float32)[:, None]
     plain, odd, mixed = scaled.reset(words), other.reset(words), scaled.reset(words)
+    step, odd_step = (shared(Gymnax.step, each) for each in (scaled, other))
+    mixed_step = shared(Gymnax.step_scaled, scaled)
     for _ in range(3):
-        plain, odd = scaled.step(plain, action)[0], other.step(odd, action)[0]
-        mixed, outcome = scaled.step_scaled(mixed, action, factors)
+        plain, odd = step(plain, action)[0], odd_step(odd, action)[0]
+        mixed, outcome = mixed_step(mixed, action, factors)
     chosen = np.where(factors == 1, scaled.sense(plain), other.sense(odd))
     np.testing.assert_array_equal(scaled.sense(mixed), chosen)
     assert outcome.fatal.shape == (BODIES,)
@@ -269,13 +271,21 @@ def test_a_habitat_that_names_parameters_must_scale_them(kind: type[Any], says: 
     assert says in str(error.value)
 
 
-class Swayed(Mill):
-    """A mill that turns by the largest of all factors."""
+class Swayed(HostCartPole):
+    """Poles that move by the largest of all factors."""
 
-    parameters: Any = ("weight",)
+    parameters = ("weight",)
 
-    def step_scaled(self, bodies: Array, action: Array, factors: Array) -> tuple[Array, Outcome]:
-        return self.step(bodies, action * factors.max())
+    def open(self, cells: int, watched: bool = False) -> None:
+        super().open(cells, watched)
+        self.factors = np.ones((cells, 1))
+
+    def set_factors(self, cells: np.ndarray, factors: np.ndarray) -> None:
+        self.factors[cells] = factors
+
+    def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
+        self.state[alive] *= self.factors.max()
+        return super().step(action, alive)
 
 
 def test_a_step_with_factors_is_checked_like_a_step() -> None:

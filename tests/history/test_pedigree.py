@@ -75,6 +75,7 @@ def test_redrawn_genomes_do_not_depend_on_recorded_notes(
     assert genomes(Archive(noted), rows, redrawn=True).tobytes() == redrawn.tobytes()
 
 
+@pytest.mark.slow
 def test_a_redrawn_child_differs_from_its_redrawn_parent_as_mutations_do(tmp_path: Path) -> None:
     settings = {
         "mutation": {"probability": 1.0, "scale": 0.02},

@@ -69,7 +69,9 @@ def test_pictures_show_what_the_inner_brain_remembers() -> None:
     np.testing.assert_array_equal(kept[:, 0], memory[:, : 2 * SENSES + size])
 
 
-@pytest.mark.parametrize("inner", [Linear(), Plastic(hidden=3)])
+@pytest.mark.parametrize(
+    "inner", [Linear(), pytest.param(Plastic(hidden=3), marks=pytest.mark.slow)]
+)
 def test_it_is_a_brain_like_any_other(inner: Brain) -> None:
     check_brain(Efferent(inner=inner, action=PARTS), 3, PARTS.size)
 

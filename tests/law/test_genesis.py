@@ -42,7 +42,7 @@ def test_worlds_begin_at_their_tick_and_wait_until_the_next_multiples(
     assert len(organisms.alive) == 8
 
 
-@pytest.mark.parametrize("words", [0, 3, 6])
+@pytest.mark.parametrize("words", [3, *(pytest.param(n, marks=pytest.mark.slow) for n in (0, 6))])
 def test_bodies_get_the_words_of_their_world_tick_and_cell(words: int) -> None:
     """The high words of all draws are first, then the low words. The last low word is left out if odd."""
     law = law_of(MEADOW, cells=3, seeds=2)

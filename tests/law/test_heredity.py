@@ -70,7 +70,7 @@ def _made(heredity: Heredity, birth: Birth) -> tuple[Newborn, Array]:
     return newborn, heredity.rebuild_genomes(birth, parents, none)
 
 
-@pytest.mark.parametrize("worlds", [1, 2])
+@pytest.mark.parametrize("worlds", [pytest.param(1, marks=pytest.mark.slow), 2])
 @pytest.mark.parametrize("founder", [SOME, ~SOME, SOME | True, SOME & False])
 def test_founders_take_the_ancestors_in_turn_and_children_their_parents_weights(
     worlds: int, founder: np.ndarray

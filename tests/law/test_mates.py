@@ -1,13 +1,15 @@
-"""A mutation that is measured, of a genome with two parents."""
+"""A mutation that is measured, of a genome with two parents; `test_strange.py` has it in whole runs."""
 
 import jax
 import numpy as np
+import pytest
 
 from primordia.law.world import World
 from tests.law.turning import turned
 from tests.worlds import MEADOW, begun, law_of
 
 
+@pytest.mark.slow
 def test_a_calibrated_mutation_is_measured_against_the_recombined_genome() -> None:
     """A child with weights of its mate acts unlike its parent. This difference is no effect of mutation.
 

@@ -49,7 +49,7 @@ numbers = st.lists(
 )
 
 
-@settings(max_examples=150)
+@settings(max_examples=50)
 @given(numbers)
 def test_amounts_are_rounded_to_the_nearest_step_and_saturate(values: list[float]) -> None:
     steps = FIXED(jnp.array(values, jnp.float32))
@@ -65,7 +65,7 @@ def test_amounts_have_the_steps_computed_by_hand() -> None:
     assert to_fixed_point(jnp.float32(3e38)) == MOST
 
 
-@settings(max_examples=100)
+@settings(max_examples=40)
 @given(*[st.lists(st.integers(-MOST, MOST), min_size=8, max_size=8)] * 2)
 def test_sums_saturate_and_never_wrap(a: list[int], b: list[int]) -> None:
     sums = add(jnp.array(a, jnp.int32), jnp.array(b, jnp.int32))
@@ -84,7 +84,7 @@ energies = st.lists(
 )
 
 
-@settings(max_examples=150)
+@settings(max_examples=50)
 @given(energies, numbers, numbers, rate, rate, rate, rate)
 def test_a_tick_changes_energy_as_exact_arithmetic_does(
     energy: list[int],

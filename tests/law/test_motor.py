@@ -9,7 +9,7 @@ from primordia.habitats import Compound, Continuous, Discrete
 from primordia.law.motor import argmax, chosen
 
 ARGMAX = jax.jit(argmax)
-SIZES = range(2, 19)
+SIZES = 2, 3, 5, 8, 18
 
 
 @pytest.mark.parametrize("size", SIZES)

@@ -20,7 +20,6 @@ TOPOLOGIES = ["ring", "torus4", "torus8", "well-mixed"]
 RULES = ["blind", "empty-only", "replacing"]
 QUICK = [
     *product(["ring"], RULES),
-    ("torus4", "replacing"),
     ("torus8", "blind"),
     ("well-mixed", "empty-only"),
     ("well-mixed", "replacing"),

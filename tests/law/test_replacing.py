@@ -1,4 +1,4 @@
-"""One tick of births in occupied cells: replaced organisms, causes of death, and mates."""
+"""One tick of births in occupied cells; `tests/engine/test_strange.py` has them in whole runs."""
 
 import numpy as np
 import pytest
@@ -10,6 +10,7 @@ from tests.law.test_placement import one_after_another
 from tests.law.turning import Turned, drawn, numbered, turned
 from tests.worlds import MEADOW, begun, law_of
 
+pytestmark = pytest.mark.slow
 N, SEED, TICK = 12, 18, 30
 CAUSES = np.array([-1, 1, -1, 0, -1, 2, -1, 5, -1, 4, -1, -1])
 """Causes of death, or -1. The last cell is empty. All other organisms without a cause want a child."""

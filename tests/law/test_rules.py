@@ -54,8 +54,8 @@ HISTORIES: dict[str, dict[str, Any]] = {
 }
 """Worlds that differ in every rule. Each organism of the first starves in the tick in which it is old."""
 TICKS = 400
-CONTROL = pytest.param("control", marks=pytest.mark.slow)
-every_world = pytest.mark.parametrize("name", ["torus8", "mills", CONTROL])
+TORUS, CONTROL = (pytest.param(name, marks=pytest.mark.slow) for name in ("torus8", "control"))
+every_world = pytest.mark.parametrize("name", [TORUS, "mills", CONTROL])
 
 
 @cache
@@ -99,7 +99,7 @@ def test_hazard_strikes_its_share_of_organism_ticks(name: str) -> None:
 @pytest.mark.parametrize(
     ("name", "origins"),
     [
-        ("torus8", {"mutant"}),
+        pytest.param("torus8", {"mutant"}, marks=pytest.mark.slow),
         ("mills", {"mutant", "copy"}),
         pytest.param("control", {"founder"}, marks=pytest.mark.slow),
     ],
@@ -121,6 +121,7 @@ def test_without_heredity_no_two_genomes_are_alike() -> None:
     assert abs(alike).max() < 5.5 / np.sqrt(weights)
 
 
+@pytest.mark.slow
 def test_newborns_begin_with_a_fresh_body_and_an_empty_memory() -> None:
     """The run stops in a tick of births; each organism has sensed as often as it has lived."""
     run = Lived(config(MEADOW, **HISTORIES["torus8"]), 10_000, births=200)
@@ -135,6 +136,7 @@ def test_newborns_begin_with_a_fresh_body_and_an_empty_memory() -> None:
     np.testing.assert_array_equal((memory == 0).all(axis=1), age == 0)
 
 
+@pytest.mark.slow
 def test_a_world_remembers_what_it_senses_at_its_ticks() -> None:
     """Children have the moments of their parents, and founders none."""
     lived = Lived(config(MEADOW, **HISTORIES["torus8"]), 1)
@@ -179,6 +181,7 @@ def assert_of_parents(lived: Lived, tick: int, before: Any, now: Any, places: li
     return len(children)
 
 
+@pytest.mark.slow
 def test_energy_is_accounted_for_to_the_unit() -> None:
     """Energy is in steps of 1/1024, rounded each tick: -1280 - 358 + 522 = -1116 a tick of 51,200."""
     for history in histories("torus8"):

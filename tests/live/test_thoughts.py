@@ -17,7 +17,7 @@ from primordia.live.panel import STRONG
 from primordia.live.words import WORDS
 from primordia.organism.inside import CHANGED, Inside, acting, tints
 from tests.live.drawn import colours, text
-from tests.worlds import config
+from tests.worlds import LEARNERS, config
 
 MARK = tuple((each >> 4) * 17 for each in ImageColor.getrgb(CHANGED))
 """The colour of a change among the colours of pictures in a terminal."""
@@ -25,17 +25,15 @@ MARK = tuple((each >> 4) * 17 for each in ImageColor.getrgb(CHANGED))
 
 @pytest.fixture(scope="module")
 def learning() -> Engine:
-    """Return a newborn world of plastic brains whose buttons swap at the age of 3."""
-    change = [{"kind": "reverse-actions", "at": [3]}]
-    brain = {"kind": "plastic", "hidden": 3}
-    return Engine(config(cells=4, brain=brain, habitat={"change": change}, genesis="fill"))
+    """Return a newborn world of plastic brains whose buttons swap at the age of 6."""
+    return Engine(config(**LEARNERS))
 
 
 def test_a_learner_has_its_outputs_fast_weights_and_changes_below_its_picture(
     learning: Engine,
 ) -> None:
     limits = learning.limits({"ticks": 10**6})
-    learning.state, _ = learning.chunks.advance(learning.state, limits, 2)
+    learning.state, _ = learning.chunks.advance(learning.state, limits, 5)
     framed, changes = [], []
     for _ in range(3):
         drawn = Companion().rows(learning, None, Room(60, 24))

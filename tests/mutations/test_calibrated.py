@@ -43,8 +43,12 @@ def nothing(value: float, parents: Array) -> Change:
 
 @pytest.mark.parametrize(
     ("differs", "kind"),
-    [(0.003, distance), (0.1, distance), (0.5, distance)]
-    + [(share, share_of_moments) for share in (0.0, 1 / 64, 0.25)],
+    [
+        (0.1, distance),
+        (1 / 64, share_of_moments),
+        *(pytest.param(much, distance, marks=pytest.mark.slow) for much in (0.003, 0.5)),
+        *(pytest.param(share, share_of_moments, marks=pytest.mark.slow) for share in (0.0, 0.25)),
+    ],
 )
 def test_a_length_is_the_largest_that_changes_no_more_than_allowed(
     differs: float, kind: Callable[[Array], Change]

@@ -6,11 +6,10 @@ from pathlib import Path
 import pytest
 
 import primordia
-from primordia.organism.playing import in_jax
 from primordia.organism.reliving.in_jax import LifeInJax
 from primordia.organism.reliving.on_host import LifeOnHost
 from primordia.runs import loop
-from tests.worlds import MILLS, config
+from tests.worlds import LEARNERS, MILLS, config
 
 CALM = {"hazard": 0.002}
 """A chance of accidents with which organisms of MILLS live longer."""
@@ -19,12 +18,8 @@ CLOCKED = {"name": "tests.toys:Clocked", "inner": "mill"}
 
 @pytest.fixture(scope="package", autouse=True)
 def _short_stretches() -> Iterator[None]:
-    """Live lives again in short stretches, so that most lives take several.
-
-    Few games are played in loops of the size of many, so that few loops are compiled.
-    """
+    """Live lives again in short stretches, so that most lives take several."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(in_jax, "FEWEST", 64)
         patch.setattr(LifeInJax, "TICKS", 512)
         patch.setattr(LifeOnHost, "TICKS", 20)
         yield
@@ -66,9 +61,5 @@ def poles(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def learners(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Make a world of poles with plastic brains, whose buttons swap at the ages 6, 17 and 40."""
     run = tmp_path_factory.mktemp("learners") / "run"
-    change = [{"kind": "reverse-actions", "at": [6, 17, 40]}]
-    brain, stop = {"kind": "plastic", "hidden": 3}, {"ticks": 90, "until": "none"}
-    many = {"cells": 8, "seed": 2, "genesis": "fill", "replication": 0.1}
-    settings = config(habitat={"change": change}, brain=brain, stop=stop, **many)
-    loop.start(settings, run)
+    loop.start(config(**LEARNERS, stop={"ticks": 90, "until": "none"}), run)
     return run

@@ -12,7 +12,7 @@ import pytest
 import primordia
 from primordia.law.law import Law
 from primordia.organism.policy import Policy
-from tests.brains.test_contract import TABLES
+from tests.brains.test_contract import QUICK, TABLES
 from tests.commands import complains, here
 from tests.worlds import MILL, config
 
@@ -45,7 +45,10 @@ def session(file: Path) -> onnxruntime.InferenceSession:
     return onnxruntime.InferenceSession(file, providers=["CPUExecutionProvider"])
 
 
-@pytest.mark.parametrize("name", TABLES)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=() if name in QUICK else pytest.mark.slow) for name in TABLES],
+)
 def test_a_model_acts_tick_for_tick_as_the_policy_does(name: str, tmp_path: Path) -> None:
     """Rounding differs between programs, so each tick begins with the policy's memory."""
     law = law_of(brain=TABLES[name])

@@ -40,11 +40,13 @@ def moments(
         yield age, np.asarray(panels.under(PICTURE, part, stretch, i))
 
 
-def test_a_brain_that_thinks_again_ends_with_the_memory_on_record(
-    learners: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The life is lived in stretches of 24 ticks, and the last one is shorter."""
+@pytest.fixture(autouse=True)
+def _stretches(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Live lives again in stretches of 24 ticks; the last one is shorter."""
     monkeypatch.setattr(LifeInJax, "TICKS", 24)
+
+
+def test_a_brain_that_thinks_again_ends_with_the_memory_on_record(learners: Path) -> None:
     life = oldest(learners, died=False)
     panels = Panels(life, [range(1, 9)], 8)
     for stretch in life.stretches():

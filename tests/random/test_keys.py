@@ -16,7 +16,7 @@ from primordia.random.keys import Purpose, below, bits, bits_if, chance, stream,
 from primordia.random.wide import Wide, to_host, wide
 from tests.chance import binomial, even
 
-FEW = settings(max_examples=50)
+FEW = settings(max_examples=25)
 word = st.integers(0, 2**32 - 1)
 
 

@@ -24,7 +24,7 @@ from primordia.random.wide import (
 )
 
 ALL = 2**64
-FEW = settings(max_examples=60)
+FEW = settings(max_examples=30)
 TOTAL = jax.jit(total, static_argnums=1)
 TIMES, TO_FLOAT, MODULO = jax.jit(times), jax.jit(to_float), jax.jit(modulo, static_argnums=1)
 LARGEST, UNTIL, PLUS = jax.jit(largest, static_argnums=1), jax.jit(Wide.until), jax.jit(Wide.plus)

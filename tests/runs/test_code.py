@@ -25,7 +25,7 @@ from tests.worlds import HOSTED, config
 SIMULATED: dict[str, Any] = {
     "task": "pond",
     **HOSTED,
-    "habitat": {"name": "gymnasium", "env": "tests.ponds:Pond-v0", "workers": 2},
+    "habitat": {"name": "gymnasium", "env": "tests.ponds:Pond-v0", "workers": 1},
 }
 
 
@@ -78,7 +78,7 @@ def test_a_run_does_not_go_on_with_changed_code(folder: Path) -> None:
 def test_no_file_of_the_current_folder_takes_the_place_of_an_installed_one(
     tmp_path: Path, start: list[str], small: tuple[str, ...]
 ) -> None:
-    """Nor in the processes of simulators, of which the pond has two."""
+    """Nor in a process of simulators, as the pond has one."""
     (tmp_path / "pond.toml").write_text(config(SIMULATED).to_toml())
     names = "numpy", "click", "jax", "tomllib", "platformdirs", "libtpu", "sitecustomize", "mmap"
     for name in names:

@@ -40,7 +40,9 @@ def same(a: Path, b: Path) -> bool:
     return all(np.array_equal(one[name], other[name]) for name in one)
 
 
-@pytest.mark.parametrize("at", [1, 333, 334, 1499, 1500])
+@pytest.mark.parametrize(
+    "at", [333, 334, 1500, *(pytest.param(at, marks=pytest.mark.slow) for at in (1, 1499))]
+)
 def test_a_fork_without_changes_lives_the_same(mill: Path, tmp_path: Path, at: int) -> None:
     """Seasons that are due, food counted since the last look, and motors all continue."""
     fork = primordia.load(mill).fork(at, tmp_path / "fork").path
@@ -69,7 +71,7 @@ def test_a_fork_starts_from_a_checkpoint_or_lives_the_past_again(
     assert same(mill, kept)
 
 
-@pytest.mark.parametrize("at", [300, 1400])
+@pytest.mark.parametrize("at", [300, pytest.param(1400, marks=pytest.mark.slow)])
 def test_figures_of_a_fork_begin_at_the_fork(mill: Path, tmp_path: Path, at: int) -> None:
     """Deaths, ages and food since the fork are those of the run that it is a fork of."""
     forked = primordia.load(mill).fork(at, tmp_path / "fork")

@@ -61,7 +61,7 @@ def segments(run: Path, name: str) -> list[int]:
     return [pq.read_metadata(path).num_rows for path in sorted((run / name).iterdir())]
 
 
-@pytest.mark.parametrize("size", [17, 100, 2**20])
+@pytest.mark.parametrize("size", [17, pytest.param(100, marks=pytest.mark.slow), 2**20])
 def test_segments_of_any_size_hold_the_same_rows(
     lived: Lived, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, size: int
 ) -> None:

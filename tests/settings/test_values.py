@@ -19,7 +19,7 @@ from primordia.settings.values import DEEPEST, LARGEST, SHOWN, check_values, sho
 from tests.commands import complains, here
 
 TASK = "CartPole-survival"
-SOME = settings(max_examples=100, suppress_health_check=[HealthCheck.function_scoped_fixture])
+SOME = settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
 THOUSANDS = settings(SOME, max_examples=5000)
 
 

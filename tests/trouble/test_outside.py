@@ -68,7 +68,10 @@ def test_a_link_in_place_of_a_folder_of_a_run_is_refused(
     assert contents(outside) == before
 
 
-@pytest.mark.parametrize("name", LEFTOVERS)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=() if "writing" in name else pytest.mark.slow) for name in LEFTOVERS],
+)
 def test_a_link_among_the_files_of_a_run_is_not_followed(
     run: Path, through: str, outside: Path, name: str
 ) -> None:

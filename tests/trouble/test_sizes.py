@@ -103,7 +103,10 @@ def test_weights_fill_their_array(run: Path) -> None:
     complains(here("info", run), 1, "is not a checkpoint of this run", "input is too small")
 
 
-@pytest.mark.parametrize("command", READING)
+@pytest.mark.parametrize(
+    "command",
+    [pytest.param(each, marks=pytest.mark.slow) if each == "film" else each for each in READING],
+)
 @pytest.mark.parametrize("tick", [pytest.param(2**50, marks=pytest.mark.slow), 2**53 - 1])
 def test_a_last_tick_that_no_run_reaches_breaks_no_figure(
     command: str, tick: int, run: Path, tmp_path: Path

@@ -27,7 +27,7 @@ class FusedChunks:
 
     def __init__(self, law: Law, habitat: JaxHabitat) -> None:
         self._law, self._habitat = law, habitat
-        self._advance = shared(advance, law, habitat, donate=(0, 1))
+        self._advance = shared(advance, law.compiled, habitat, donate=(0, 1))
         self.events = log.empty(law)
         """events of the latest chunk"""
 

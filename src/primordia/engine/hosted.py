@@ -42,7 +42,7 @@ class HostedChunks:
         """Return the state of a run before genesis, from the worlds' seeds, uint64 (W,)."""
         world = begin(self._law, seeds)
         self._no_fates = no_fates(self._law)
-        self._calls = Calls(self._law, Form.of(world), self._habitat.words)
+        self._calls = Calls(self._law.compiled, Form.of(world), self._habitat.words)
         cells = len(world.organisms.alive)
         return State(world, np.zeros((cells, self._habitat.senses_size), np.float32))
 

@@ -63,8 +63,9 @@ class _Pedigree:
         self._births = births = lives.take(self._members)
         self._notes = run.notes_of(births)
         self._climate = past.of_lives(births, births.born)
-        seeds = wide(run.world_seeds[births.world])
-        seeds = stream(seeds, Purpose.SHADOW, wide(0)) if redrawn else seeds
+        seed = wide(run.world_seeds[births.world[:1]])  # of one shape, which is compiled once
+        seed = stream(seed, Purpose.SHADOW, wide(0)) if redrawn else seed
+        seeds = jax.tree.map(lambda word: np.repeat(word, len(births)), seed)
         # JAX takes entries ten times as slowly as NumPy.
         self._counts = jax.device_get((seeds, wide(births.id), wide(births.born)))
         self._redraws_notes = redrawn and _inherits_notes(run.heredity.mutation)

@@ -1,7 +1,7 @@
 """The law: all settings that are fixed for the worlds of a run."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Literal
 
@@ -98,6 +98,17 @@ class Law:
         return dict(self.beginning)["hazard"] > 0 or any(
             season.setting == "hazard" for season in self.seasons
         )
+
+    @property
+    def compiled(self) -> "Law":
+        """Return the law that stands for all laws with the same compiled code.
+
+        They differ in their chances of replication and of accidents at the beginning, which are in the
+        climate of a world; only whether there are accidents is compiled.
+        """
+        chances = {"replication": 0.0, "hazard": float(self.has_hazard)}
+        beginning = tuple((name, chances.get(name, value)) for name, value in self.beginning)
+        return replace(self, beginning=beginning)
 
     @property
     def cell_numbers(self) -> Array:
