@@ -65,7 +65,7 @@ class _Pedigree:
         self._climate = past.of_lives(births, births.born)
         seed = wide(run.world_seeds[births.world[:1]])  # of one shape, which is compiled once
         seed = stream(seed, Purpose.SHADOW, wide(0)) if redrawn else seed
-        seeds = jax.tree.map(lambda word: np.repeat(word, len(births)), seed)
+        seeds = jax.tree.map(lambda word: np.repeat(np.asarray(word), len(births)), seed)
         # JAX takes entries ten times as slowly as NumPy.
         self._counts = jax.device_get((seeds, wide(births.id), wide(births.born)))
         self._redraws_notes = redrawn and _inherits_notes(run.heredity.mutation)
