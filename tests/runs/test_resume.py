@@ -21,7 +21,7 @@ from tests.commands import begin, complains, here
 from tests.trouble import flip, newest
 from tests.worlds import MILL, config
 
-TICKS, FEW = 30_000, 3_000
+TICKS, FEW = 90_000, 3_000
 """Ticks of runs that are disturbed while they live, and of others."""
 SLOWLY = ("--checkpoint-every", "0.05")
 
