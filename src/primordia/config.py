@@ -169,7 +169,7 @@ class Config(Settings):
     def sizes(self, habitat: AnyHabitat) -> tuple[int, int]:
         """Return the numbers of senses and of outputs of a brain that lives in the habitat."""
         senses = habitat.senses_size + bool(self.brain.get("interoception"))
-        return senses, habitat.action.size + (0 if self.act is None else self.act.outputs)
+        return senses, Act.all_outputs(habitat.action.size, self.act)
 
     def build_layout(self, habitat: AnyHabitat) -> Layout:
         """Return the layout of the genomes of organisms that live in the habitat."""

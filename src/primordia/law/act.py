@@ -78,6 +78,11 @@ class Act(Settings):
         """Number of outputs that the act adds to a brain."""
         return 2 if self.endowment == "chosen" else 1
 
+    @staticmethod
+    def all_outputs(action: int, act: "Act | None") -> int:
+        """Return the number of a brain's outputs: those of the action, and those that an act adds."""
+        return action + (0 if act is None else act.outputs)
+
     def tries(self, copying: Array, energy: Array, price: Array) -> Tries:
         """Return which organisms try to copy themselves, and what they pay.
 

@@ -68,7 +68,7 @@ class Law:
     @property
     def outputs(self) -> int:
         """The number of a brain's outputs: those of the action, and those that decide about copies."""
-        return self.action.size + (0 if self.act is None else self.act.outputs)
+        return Act.all_outputs(self.action.size, self.act)
 
     @cached_property
     def rates(self) -> tuple[str, ...]:
