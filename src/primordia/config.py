@@ -18,10 +18,12 @@ from primordia.brains.layout import Layout
 from primordia.errors import InputError
 from primordia.fitting import check
 from primordia.habitats import contract as habitats
+from primordia.habitats.archipelago import archipelago
 from primordia.habitats.change import changes_of
 from primordia.habitats.changing import changing
 from primordia.habitats.checks import check_properties
 from primordia.habitats.contract import AnyHabitat
+from primordia.habitats.scaled import scaled
 from primordia.law.act import Act
 from primordia.law.efference import Efferent
 from primordia.law.heredity import Heredity
@@ -42,6 +44,7 @@ from primordia.settings.fields import (
     refusal,
     setting_fields,
 )
+from primordia.settings.islands import KEY, Islands, tables_of
 from primordia.settings.limits import ForkedFrom, Stop
 from primordia.settings.making import make
 from primordia.settings.tables import (
@@ -56,6 +59,8 @@ from primordia.settings.tables import (
 )
 from primordia.settings.values import check_values
 
+MIGRATION = "placement.migration"
+"""The name of a rate that only worlds with islands have."""
 CONTRACTS: dict[str, Any] = {"habitat": habitats, "brain": brains, "mutation": mutations}
 """Name of a replaceable part's table -> the module with the contract of that part."""
 
@@ -151,11 +156,45 @@ class Config(Settings):
         table = self.habitat
         for original, copy in self._kept.items():
             table = replaced(table, original, copy)
+        if KEY in table:
+            return archipelago([each.build_habitat() for each in self.by_island], self.islands)
         own = dict(table)
-        changes = own.pop("change", None)
+        changes, factors = own.pop("change", None), own.pop("factors", None)
         habitat = make("habitat", own, habitats.find)
         check_properties(habitat)
+        if factors is not None:
+            habitat = scaled(habitat, factors)
         return habitat if changes is None else changing(habitat, changes_of(changes, habitat))
+
+    @property
+    def islands(self) -> Islands:
+        """Return the islands of a world; a world without islands is one island."""
+        tables = tables_of(self.habitat)
+        return Islands.of(tables, self.cells, self.placement.together(self.cells))
+
+    @property
+    def by_island(self) -> "list[Config]":
+        """Return the settings of each island; those of a plain world are its own."""
+        if KEY not in self.habitat:
+            return [self]
+        return [self.of_island(number) for number in range(self.islands.count)]
+
+    def of_island(self, number: int) -> "Config":
+        """Return the settings of a plain world whose cells are all like those of an island.
+
+        Raises:
+            InputError: a setting of the island is wrong; the message names it.
+        """
+        island = tables_of(self.habitat)[number]
+        shared = {name: value for name, value in self.habitat.items() if name != KEY}
+        values = merged(
+            {**self.model_dump(), "habitat": shared}, {"habitat": island.habitat, **island.rates}
+        )
+        try:
+            check_values(values)
+            return Config.model_validate(replaced(values, NONE, None)).keeping(self._kept)
+        except ValidationError as error:
+            raise InputError(f"island {island.name}: {first_fault(error, Config)}") from None
 
     def build_brain(self, habitat: AnyHabitat) -> Brain:
         """Return the brain of the organisms that live in the habitat."""
@@ -177,11 +216,13 @@ class Config(Settings):
 
     def build_law(self, habitat: AnyHabitat) -> Law:
         """Return the law of the run's worlds."""
-        brain, heredity = self.build_brain(habitat), self.build_heredity(self.build_layout(habitat))
+        brain, layout = self.build_brain(habitat), self.build_layout(habitat)
+        heredity = self.build_heredity(layout)
         senses, outputs = self.sizes(habitat)
         return Law(
             worlds=self.seeds,
             cells=self.cells,
+            islands=self.islands,
             brain=brain,
             heredity=heredity,
             senses=senses,
@@ -192,7 +233,7 @@ class Config(Settings):
             placement=self.placement,
             metabolism=self.metabolism,
             act=self.act,
-            beginning=tuple(self._rates(heredity).items()),
+            beginning=tuple({**self._rates(layout), **self._rates_of_islands(layout)}.items()),
             genesis=self.genesis,
             seasons=self.seasons,
             saturation_ticks=self.saturation_ticks,
@@ -210,14 +251,26 @@ class Config(Settings):
             worlds=self.seeds,
         )
 
-    def _rates(self, heredity: Heredity) -> dict[str, float]:
-        """Return the settings that seasons may change, by dotted name."""
-        own = heredity.mutation.rates(heredity.layout).items()
+    def _rates(self, layout: Layout) -> dict[str, float]:
+        """Return the settings that seasons may change, by dotted name, without those of islands."""
+        mutation = make("mutation", self.mutation, mutations.find)
         return {
             **rates_of(self),
-            **{f"mutation.{name}": value for name, value in own},
+            **{f"mutation.{name}": value for name, value in mutation.rates(layout).items()},
             **rates_of(self.metabolism or Metabolism(), "metabolism."),
         }
+
+    def _rates_of_islands(self, layout: Layout) -> dict[str, float]:
+        """Return the migration, and the rates in which islands differ, as `island.setting`."""
+        if self.islands.count == 1:
+            return {}
+        rates, shared = {MIGRATION: self.placement.migration}, self._rates(layout)
+        for own, island in zip(self.by_island, self.islands.names, strict=True):
+            local = {**own._rates(layout), MIGRATION: own.placement.migration}
+            for name, value in local.items():
+                if value != shared.get(name, self.placement.migration):
+                    rates[f"{island}.{name}"] = value
+        return rates
 
     def code_of(self, part: str) -> list[str]:
         """Return the code that a part's settings name, as `module:name` or as a module."""

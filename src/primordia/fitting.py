@@ -10,11 +10,12 @@ from primordia.law.law import Law
 from primordia.mutations.checks import check_mutation
 from primordia.own_code import LIBRARIES
 from primordia.settings.fields import rates_of
-from primordia.settings.tables import PARTS, did_you_mean
+from primordia.settings.islands import tables_of
+from primordia.settings.tables import PARTS, did_you_mean, flat
 
 
 def check(config: Any) -> None:
-    """Check a Config as a whole.
+    """Check a Config as a whole, with each of its islands.
 
     Raises:
         InputError, ValueError: settings do not fit together, or a part is wrong.
@@ -37,12 +38,47 @@ def check(config: Any) -> None:
             " set motor.kind to direct"
         )
     law = config.build_law(habitat)
+    _check_islands(config, law)
     try:
         law.heredity.mutation.check(law.heredity.layout)
     except ValueError as error:
         raise InputError(f"mutation.{error}") from None
     for season in config.seasons:
         _check_season(season.setting, config, law)
+
+
+def _check_islands(config: Any, law: Law) -> None:
+    islands, mixed = law.islands, config.placement.topology == "well-mixed"
+    if config.placement.migration and not mixed:
+        raise InputError(
+            f"placement.migration: on a {config.placement.topology}, children cross the borders of"
+            " islands next door; set placement.topology to well-mixed, or leave migration out"
+        )
+    if config.placement.migration and islands.count == 1:
+        raise InputError("placement.migration: this world has no islands; add [[habitat.islands]]")
+    if islands.count == 1:
+        return
+    for number, island in enumerate(tables_of(config.habitat)):
+        if mixed and islands.sizes[number] < 2:
+            raise InputError(
+                f"habitat.islands.{number}.share: {island.name} gets one cell, in which no child has a"
+                " neighbour; choose more cells or a larger share"
+            )
+        for name in flat(island.rates):
+            if not law.governed(name):
+                raise InputError(
+                    f"habitat.islands.{number}.{name}: islands cannot differ in this setting; they"
+                    " differ in habitat, hazard, replication and rates of metabolism and mutation"
+                )
+        if island.metabolism and config.metabolism is None:
+            raise InputError(
+                f"habitat.islands.{number}.metabolism: the task has no metabolism; add one for all"
+                " islands"
+            )
+        try:
+            check(config.of_island(number))
+        except InputError as error:
+            raise InputError(f"island {island.name}: {error}") from None
 
 
 def _check_own_code(config: Any, habitat: AnyHabitat) -> None:

@@ -9,7 +9,7 @@ from pydantic import Field
 from pydantic_core import PydanticUndefined
 
 from primordia.config import CONTRACTS, Config
-from primordia.habitats.changing import unchanging
+from primordia.habitats.around import innermost
 from primordia.runs.archive import Archive
 from primordia.settings.fields import choices, setting_fields
 from primordia.settings.tables import DEFAULTS, NONE, PARTS, merged, replaced, values_of
@@ -39,7 +39,7 @@ def run_rows(run: Path, given: dict[str, Any]) -> list[tuple[str, str]]:
 def habitat_rows(run: Path) -> list[tuple[str, str]]:
     """Return each setting of a run's habitat, with its meaning and its value in the run."""
     archive = Archive(run)
-    return _rows(setting_fields(type(unchanging(archive.habitat))), archive.config.habitat)
+    return _rows(setting_fields(type(innermost(archive.habitat))), archive.config.habitat)
 
 
 def _rows(fields: dict[str, Any], values: dict[str, Any]) -> list[tuple[str, str]]:

@@ -187,7 +187,7 @@ def _compared(run: Path, alone: list[str], how: str) -> str:
     archive = Archive(run)
     last, _ = archive.newest
     assert last is not None
-    (found,) = digests(last.digests, archive.state, 1)
+    (found,) = digests(last.digests, archive.state, 1, archive.config.islands)
     return "" if [found] == alone else f"{found[:16]}... {how}, {alone[0][:16]}... in this process"
 
 
@@ -198,4 +198,6 @@ def _digests(ticks: int, longest: int | None = None, **settings: Any) -> list[st
     limits = engine.limits({"ticks": ticks})
     while engine.any_running(limits):
         recorder.append(engine.advance(limits))
-    return digests(recorder.digests(), engine.arrays(), engine.config.seeds)
+    return digests(
+        recorder.digests(), engine.arrays(), engine.config.seeds, engine.law.islands
+    )

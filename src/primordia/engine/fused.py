@@ -6,6 +6,7 @@ from jax import Array, lax
 
 from primordia.compiled import shared
 from primordia.engine.state import Limits, State, filled, named_leaves, running, ticks_left
+from primordia.habitats.archipelago import ArchipelagoInJax, Parts, split
 from primordia.habitats.bodies import insert_bodies, placeholder_bodies, select_bodies
 from primordia.habitats.contract import Bodies, JaxHabitat
 from primordia.law import events as log
@@ -17,6 +18,7 @@ from primordia.law.population import settle
 from primordia.law.tick import Fates, judge, keys_of, no_fates, rest, think
 from primordia.law.world import World
 from primordia.random.keys import Purpose, stream
+from primordia.random.wide import Wide
 
 
 class FusedChunks:
@@ -108,15 +110,29 @@ def _quiet(
 
 
 def _embody(law: Law, habitat: JaxHabitat, world: World, bodies: Bodies, newborn: Array) -> Bodies:
-    """Insert fresh bodies for the newborn in batches, since bodies may be expensive.
-
-    `newborn` is bool (C,).
-    """
+    """Insert fresh bodies for the newborn, bool (C,), on each island."""
     key = stream(world.worlds.seed, Purpose.BODY, world.worlds.tick)
+    if not isinstance(habitat, ArchipelagoInJax):
+        return _embody_in(habitat, key, range(law.cells), bodies, newborn)
+    islands = zip(
+        habitat.habitats, law.islands.cells, bodies.island, split(newborn, bodies.sizes), strict=True
+    )
+    parts = (_embody_in(own, key, cells, of, here) for own, cells, of, here in islands)
+    return Parts(tuple(parts), bodies.sizes)
 
-    def one_batch(cells: Array, valid: Array, carry: tuple[Bodies]) -> tuple[Bodies]:
-        words = body_words(key.take(cells // law.cells), cells % law.cells, habitat.words)
-        where = jnp.where(valid, cells, len(newborn))
+
+def _embody_in(
+    habitat: JaxHabitat, key: Wide, cells: range, bodies: Bodies, newborn: Array
+) -> Bodies:
+    """Insert fresh bodies into `cells` of each world, in batches, since bodies may be expensive.
+
+    `bodies` and `newborn`, bool (W x len(cells),), are those of these cells; `key` is (W,).
+    """
+
+    def one_batch(rows: Array, valid: Array, carry: tuple[Bodies]) -> tuple[Bodies]:
+        world, cell = rows // len(cells), rows % len(cells) + cells.start
+        words = body_words(key.take(world), cell, habitat.words)
+        where = jnp.where(valid, rows, len(newborn))
         return (insert_bodies(carry[0], where, habitat.reset(words)),)
 
     return log.for_each(newborn, (bodies,), one_batch)[0]

@@ -125,10 +125,11 @@ class HostedChunks:
         bodies = {f"bodies.{name}": array for name, array in self._habitat.save().items()}
         bodies["bodies.senses"] = np.asarray(state.bodies)
         for name, array in bodies.items():
-            if np.shape(array)[:1] != np.shape(state.bodies)[:1]:
+            rows = self._law.worlds * len(self._law.islands.with_rows(name))
+            if np.shape(array)[:1] != (rows,):
                 raise InputError(
                     f"habitat: save gives {name.removeprefix('bodies.')} of shape {np.shape(array)};"
-                    f" the first axis must be the {len(state.bodies)} cells"
+                    f" the first axis must be the {rows} cells"
                 )
         return {
             f"world.{name}": np.asarray(leaf) for name, leaf in named_leaves(state.world)

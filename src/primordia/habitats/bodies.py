@@ -6,6 +6,7 @@ import numpy as np
 from jax import Array
 
 from primordia.compiled import shared
+from primordia.habitats.archipelago import ArchipelagoInJax, Parts, joined, split
 from primordia.habitats.contract import Bodies, JaxHabitat
 
 MADE = 32
@@ -20,6 +21,11 @@ def fresh_bodies(habitat: JaxHabitat, words: np.ndarray) -> Bodies:
 
 def placeholder_bodies(habitat: JaxHabitat, cells: int) -> Bodies:
     """Return the bodies of cells before the first birth: copies of one body that is made from zeros."""
+    if isinstance(habitat, ArchipelagoInJax):
+        sizes = habitat.islands.sizes
+        each = zip(habitat.habitats, sizes, strict=True)
+        worlds = cells // sum(sizes)
+        return Parts(tuple(placeholder_bodies(own, worlds * size) for own, size in each), sizes)
     made = fresh_bodies(habitat, np.zeros((MADE, habitat.words), np.uint32))
     return jax.tree.map(lambda leaf: jnp.repeat(leaf[:1], cells, axis=0), made)
 
@@ -31,6 +37,9 @@ def insert_bodies(bodies: Bodies, cells: Array, new: Bodies) -> Bodies:
 
 def select_bodies(mask: Array, yes: Bodies, no: Bodies) -> Bodies:
     """Return each cell's body: from `yes` where the mask, bool (C,), is true, else from `no`."""
+    if isinstance(yes, Parts):
+        each = zip(split(mask, yes.sizes), yes.island, no.island, strict=True)
+        return Parts(tuple(select_bodies(*own) for own in each), yes.sizes)
 
     def select_leaf(a: Array, b: Array) -> Array:
         return jnp.where(mask.reshape(-1, *[1] * (a.ndim - 1)), a, b)
@@ -40,6 +49,10 @@ def select_bodies(mask: Array, yes: Bodies, no: Bodies) -> Bodies:
 
 def not_finite(bodies: Bodies) -> Array:
     """Return which bodies have a coordinate that is not finite: bool (C,), or () if all are integers."""
+    if isinstance(bodies, Parts):
+        counts = [len(jax.tree.leaves(own)[0]) for own in bodies.island]
+        each = zip(map(not_finite, bodies.island), counts, strict=True)
+        return joined([jnp.broadcast_to(found, count) for found, count in each], bodies.sizes)
     leaves = [leaf for leaf in jax.tree.leaves(bodies) if jnp.issubdtype(leaf.dtype, jnp.floating)]
     flat = [(~jnp.isfinite(leaf.reshape(len(leaf), -1))).any(axis=1) for leaf in leaves]
     return jnp.stack(flat).any(axis=0) if flat else jnp.zeros((), bool)

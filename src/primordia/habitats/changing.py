@@ -1,6 +1,6 @@
 """Habitats that change within a life: a wrapper around any habitat; see `change`."""
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -8,17 +8,10 @@ import numpy as np
 from jax import Array, lax
 
 from primordia.compiled import shared
+from primordia.habitats.around import AroundHost, AroundJax, inside
 from primordia.habitats.bodies import select_bodies
 from primordia.habitats.change import Kind, Parameter, word_of
-from primordia.habitats.contract import (
-    Ability,
-    Action,
-    AnyHabitat,
-    Bodies,
-    HostHabitat,
-    JaxHabitat,
-    Outcome,
-)
+from primordia.habitats.contract import Action, AnyHabitat, Bodies, JaxHabitat, Outcome
 from primordia.random.wide import Wide
 
 if TYPE_CHECKING:
@@ -102,35 +95,17 @@ def factors_of(changes: tuple[Kind, ...], names: tuple[str, ...], course: Course
     return factors
 
 
-class _Wrapper:
-    """What a habitat that changes has in common with the habitat that it wraps."""
+class _Changing:
+    """What changing habitats in JAX and on the host have in common."""
 
-    def __init__(self, inner: AnyHabitat, changes: tuple[Kind, ...]) -> None:
-        self.inner, self.changes = inner, changes
-        self.senses_size, self.action = inner.senses_size, inner.action
-        self.words = inner.words + WORDS
-        self.versions, self.rate, self.episode = inner.versions, inner.rate, inner.episode
-        self.tallies, self.exact = inner.tallies, inner.exact
+    inner: Any
+    action: Action
+
+    def __init__(self, inner: Any, changes: tuple[Kind, ...]) -> None:
+        super().__init__(inner, changes)
+        self.changes, self.words = changes, inner.words + WORDS
         scales = any(isinstance(change, Parameter) for change in changes)
         self.scaled = inner.parameters if scales else ()
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Wrapper) and self._key == other._key
-
-    def __hash__(self) -> int:
-        return hash(self._key)
-
-    @property
-    def _key(self) -> tuple:
-        return self.inner, self.changes
-
-    def lacks(self, ability: Ability) -> list[str]:
-        """Return the methods that the wrapped habitat lacks for an ability."""
-        return self.inner.lacks(ability)
-
-    def original(self) -> AnyHabitat | None:
-        """Return the wrapped habitat as the standard benchmark scores it, without changes."""
-        return self.inner.original()
 
     def picture(self, body: Changed, action: np.ndarray) -> "Image":
         """Return the wrapped habitat's picture of the body and of what it did, changes included.
@@ -155,10 +130,8 @@ class _Wrapper:
         return ", ".join(parts)
 
 
-class ChangingInJax(_Wrapper, JaxHabitat):
+class ChangingInJax(_Changing, AroundJax):
     """A habitat in JAX whose world changes within a life."""
-
-    inner: JaxHabitat
 
     def reset(self, words: Array) -> Changed:
         """Return fresh bodies; see `JaxHabitat.reset`."""
@@ -180,10 +153,8 @@ class ChangingInJax(_Wrapper, JaxHabitat):
         return Changed(inner, advance(self.changes, bodies.course)), outcome
 
 
-class ChangingOnHost(_Wrapper, HostHabitat):
+class ChangingOnHost(_Changing, AroundHost):
     """A habitat on the host whose world changes within a life."""
-
-    inner: HostHabitat
 
     def open(self, cells: int, watched: bool = False) -> None:
         """Allocate a body for each of N cells; see `HostHabitat.open`."""
@@ -221,21 +192,9 @@ class ChangingOnHost(_Wrapper, HostHabitat):
             self.inner.set_factors(cells, factors[cells])
         self._factors = factors
 
-    def close(self) -> None:
-        """Release what `open` allocated."""
-        self.inner.close()
-
     def seen(self) -> Changed:
         """Return the bodies of the wrapped habitat, and their courses."""
         return Changed(self.inner.seen(), jax.tree.map(np.asarray, self._course))
-
-    def tally(self) -> np.ndarray:
-        """Return the counts of the wrapped habitat."""
-        return self.inner.tally()
-
-    def message(self, cell: int) -> str:
-        """Return why the body in a cell failed."""
-        return self.inner.message(cell)
 
     def save(self) -> dict[str, np.ndarray]:
         """Return the arrays of the wrapped habitat, and those of the courses."""
@@ -276,7 +235,8 @@ def changes_at(habitat: AnyHabitat, body: Bodies, ages: np.ndarray) -> np.ndarra
         body: one body, no first axis, as a picture takes it.
         ages: int (n,), ticks.
     """
-    if not isinstance(habitat, _Wrapper):
+    habitat = inside(habitat, _Changing)
+    if habitat is None:
         return np.zeros(len(ages), bool)
     age, course = jnp.asarray(ages, jnp.int32), body.course
     key = course.key.map(lambda word: jnp.broadcast_to(word, age.shape))
@@ -285,6 +245,6 @@ def changes_at(habitat: AnyHabitat, body: Bodies, ages: np.ndarray) -> np.ndarra
     return np.asarray(jnp.stack(comes).any(axis=0) & (age > 0))
 
 
-def unchanging(habitat: AnyHabitat) -> AnyHabitat:
-    """Return the habitat without its changes."""
-    return habitat.inner if isinstance(habitat, _Wrapper) else habitat
+def is_changing(habitat: AnyHabitat) -> bool:
+    """Return whether the habitat's world changes within a life."""
+    return inside(habitat, _Changing) is not None

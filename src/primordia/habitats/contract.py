@@ -190,6 +190,14 @@ class Habitat(ABC):
         return ()
 
     @default
+    def buttons(self) -> tuple[str, ...] | None:
+        """Return the name of each choice of a Discrete action; None: the choices have no names.
+
+        Islands of one archipelago share buttons with equal names. The button `noop` does nothing.
+        """
+        return None
+
+    @default
     def exact(self) -> bool:
         """Return whether lives go on bit for bit from a checkpoint."""
         return self.can(Ability.SAVE)

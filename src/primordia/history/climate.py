@@ -13,7 +13,7 @@ class PastClimate:
     """The climates of all worlds of a run, as its metrics record them."""
 
     def __init__(self, run: Records) -> None:
-        self._beginning = _beginning(run)
+        self._beginning, self._islands = _beginning(run), run.config.islands
         self._metrics: dict[str, np.ndarray] | None = None
         if run.config.seasons:
             columns = ("world", "tick", *self._beginning)
@@ -23,10 +23,15 @@ class PastClimate:
 
     def of_lives(self, lives: Lives, ticks: np.ndarray) -> Climates:
         """Return the settings in force for n organisms, each at its own tick (n,)."""
-        return self.of_worlds(lives.world, ticks)
+        return self.of_cells(lives.world, lives.cell, ticks)
+
+    def of_cells(self, worlds: np.ndarray, cells: np.ndarray, ticks: np.ndarray) -> Climates:
+        """Return the settings in force in n cells of worlds, each at its own tick (n,)."""
+        climates = self.of_worlds(worlds, ticks)
+        return self._islands.here(climates, self._islands.of_cells(cells), np.where)
 
     def of_worlds(self, worlds: np.ndarray, ticks: np.ndarray) -> Climates:
-        """Return the settings in force in n worlds, each at its own tick (n,).
+        """Return the settings in force in n worlds, each at its own tick (n,), those of islands apart.
 
         A season that acts at the end of tick t is in force from tick t + 1 on; its sample has tick t.
         """

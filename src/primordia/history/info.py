@@ -38,7 +38,9 @@ def info(run: Records) -> dict[str, Any]:
         {**world, "digest": digest}
         for part in run.parts()
         for world, digest in zip(
-            _worlds(part), digests(part.row_digests, part.state, part.config.seeds), strict=True
+            _worlds(part),
+            digests(part.row_digests, part.state, part.config.seeds, part.config.islands),
+            strict=True,
         )
     ]
     whole = {

@@ -17,6 +17,7 @@ from primordia.law.metabolism import ONE, Metabolism
 from primordia.law.motor import Motor
 from primordia.law.placement import Placement
 from primordia.law.seasons import Ratchet, Schedule
+from primordia.settings.islands import Islands
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,7 @@ class Law:
     worlds: int
     cells: int
     """cells of one world"""
+    islands: Islands
     brain: Brain
     heredity: Heredity
     senses: int
@@ -60,10 +62,21 @@ class Law:
     def in_cells(
         self, climate: Mapping[str, Array], cells: Array | None = None
     ) -> dict[str, Array]:
-        """Return the settings in all cells (C,), or in some (K,), from the settings of worlds (W,)."""
+        """Return the settings in all cells (C,), or in some (K,), from the settings of worlds (W,).
+
+        Settings of an island replace those of the whole world in its cells.
+        """
         if cells is None:
-            return {name: self.per_cell(values) for name, values in climate.items()}
-        return {name: values[cells // self.cells] for name, values in climate.items()}
+            in_all = {name: self.per_cell(values) for name, values in climate.items()}
+            island = np.tile(self.islands.of_cells(np.arange(self.cells)), self.worlds)
+            return self.islands.here(in_all, island, jnp.where)
+        in_some = {name: values[cells // self.cells] for name, values in climate.items()}
+        return self.islands.here(in_some, self.island_of(cells % self.cells), jnp.where)
+
+    def island_of(self, cells: Array) -> Array:
+        """Return the numbers of the islands of cells within a world, int32 (K,)."""
+        last = jnp.asarray(self.islands.bounds[1:-1], jnp.int32)
+        return (cells[:, None] >= last).sum(axis=1, dtype=jnp.int32)
 
     @property
     def outputs(self) -> int:
@@ -78,11 +91,14 @@ class Law:
     def governed(self, setting: str) -> list[str]:
         """Return the names among `rates` whose values change if a season changes a setting; [] for
         an unknown setting."""
-        part, _, name_in_part = setting.partition(".")
+        island, own = self.islands.split(setting)
+        part, _, name_in_part = own.partition(".")
+        names = [own]
         if part == "mutation":
-            names = self.heredity.mutation.governed(name_in_part, self.heredity.layout)
-            return [f"mutation.{name}" for name in names]
-        return [setting] if setting in self.rates else []
+            inner = self.heredity.mutation.governed(name_in_part, self.heredity.layout)
+            names = [f"mutation.{name}" for name in inner]
+        before = f"{island}." if island else ""
+        return [before + name for name in names if before + name in self.rates]
 
     def perceived(self, senses: Any, energy: Any) -> Any:
         """Return what N organisms perceive, float32 (N, S): the habitat's senses (N, S'), followed by
@@ -95,8 +111,11 @@ class Law:
     @property
     def has_hazard(self) -> bool:
         """Return whether accidents can happen, now or in a later season."""
-        return dict(self.beginning)["hazard"] > 0 or any(
-            season.setting == "hazard" for season in self.seasons
+        beginning = any(
+            value > 0 for name, value in self.beginning if self.islands.split(name)[1] == "hazard"
+        )
+        return beginning or any(
+            self.islands.split(season.setting)[1] == "hazard" for season in self.seasons
         )
 
     @property
@@ -107,7 +126,10 @@ class Law:
         climate of a world; only whether there are accidents is compiled.
         """
         chances = {"replication": 0.0, "hazard": float(self.has_hazard)}
-        beginning = tuple((name, chances.get(name, value)) for name, value in self.beginning)
+        beginning = tuple(
+            (name, chances.get(self.islands.split(name)[1], value))
+            for name, value in self.beginning
+        )
         return replace(self, beginning=beginning)
 
     @property

@@ -79,7 +79,9 @@ def turnover(
     Returns:
         world, events, cells of the newborn (bool (C,)).
     """
-    parent = _place(law, keys[Purpose.PLACE], fates.wants, world.organisms.alive)
+    parent = _place(
+        law, world.worlds, keys[Purpose.PLACE], fates.wants, world.organisms.alive
+    )
     organisms, worlds = _endow(law, world, parent, fates.endowment)
     cause = fates.cause
     cause = jnp.where(organisms.alive & (parent >= 0) & (cause < 0), Cause.REPLACED, cause)
@@ -96,14 +98,18 @@ def turnover(
     return World(organisms, worlds), events._replace(births=listed), births.newborn
 
 
-def _place(law: Law, key: Wide, wants: Array, alive: Array) -> Array:
+def _place(law: Law, worlds: Worlds, key: Wide, wants: Array, alive: Array) -> Array:
     """Return the cell of each newborn's parent (on the axis of all worlds), or -1: int32 (C,)."""
     key, cells = key.take(np.s_[:, None]), jnp.arange(law.cells)[None]
 
     def draw(number: Array) -> Wide:
         return bits_if(wants.any(), key, cells, number)
 
-    parent = law.placement.parents(draw, law.by_world(wants), law.by_world(alive))
+    chance = None
+    if law.islands.count > 1:
+        chance = law.by_world(law.in_cells(worlds.climate)["placement.migration"])
+    wants, alive = law.by_world(wants), law.by_world(alive)
+    parent = law.placement.parents(draw, wants, alive, law.islands, chance)
     first = law.cells * jnp.arange(law.worlds, dtype=jnp.int32)[:, None]
     return jnp.where(parent >= 0, parent + first, -1).ravel()
 
@@ -246,7 +252,7 @@ def _mates(law: Law, births: Births, keys: Streams, cells: Array, founder: Array
     if law.heredity.recombination is None:
         return None
     world, cell = cells // law.cells, cells % law.cells
-    near = law.placement.near(cell, law.cells) & law.by_world(births.survives)[world]
+    near = law.placement.near(cell, law.islands) & law.by_world(births.survives)[world]
     is_parent = jnp.arange(law.cells) == (births.parent[cells] % law.cells)[:, None]
     word = bits(keys[Purpose.MATE].take(world), cell)
     chosen = law.heredity.recombination.mates(word, near & ~is_parent & ~founder[:, None])

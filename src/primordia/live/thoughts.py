@@ -8,12 +8,12 @@ from rich.style import Style
 
 from primordia.compiled import shared
 from primordia.engine.engine import Engine
+from primordia.habitats.changing import is_changing
 from primordia.live.paint import FAINT, Row, levels, photograph
 from primordia.live.panel import STRONG
 from primordia.organism.inside import (
     CHANGED,
     acting,
-    is_changing,
     is_shown,
     look,
     news_of,

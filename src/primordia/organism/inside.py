@@ -11,7 +11,7 @@ import numpy as np
 from jax import Array, lax
 
 from primordia.brains.contract import Genome
-from primordia.habitats.changing import changes_at, unchanging
+from primordia.habitats.changing import changes_at, is_changing
 from primordia.habitats.contract import Action, AnyHabitat, Bodies, Discrete
 from primordia.law.law import Law
 from primordia.law.motor import outputs_of
@@ -38,11 +38,6 @@ class Inside(NamedTuple):
 def is_shown(law: Law, habitat: AnyHabitat) -> bool:
     """Return whether a world's pictures show the inside of organisms."""
     return is_changing(habitat) or _shows(law)
-
-
-def is_changing(habitat: AnyHabitat) -> bool:
-    """Return whether a habitat changes within lives."""
-    return unchanging(habitat) is not habitat
 
 
 def news_of(habitat: AnyHabitat) -> int:

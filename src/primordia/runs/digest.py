@@ -9,6 +9,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from primordia.settings.islands import Islands
+
 LANES = (0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F)
 BLOCK = 65536
 
@@ -34,7 +36,10 @@ def _mix(h: np.ndarray) -> np.ndarray:
 
 
 def digests(
-    records: dict[str, np.ndarray], arrays: Mapping[str, np.ndarray], worlds: int
+    records: dict[str, np.ndarray],
+    arrays: Mapping[str, np.ndarray],
+    worlds: int,
+    islands: Islands,
 ) -> list[str]:
     """Return the digest of each world, hexadecimal.
 
@@ -42,13 +47,18 @@ def digests(
         records: the sums of row hashes of each table, uint64 (W, 2).
         arrays: the state by name, first axis worlds or cells; open tails are left out.
         worlds: number of worlds W.
+        islands: the islands of a world.
     """
     state = {name: arrays[name] for name in arrays if not name.startswith("tail.")}
-    return [_world_digest(records, state, world, worlds) for world in range(worlds)]
+    return [_world_digest(records, state, world, worlds, islands) for world in range(worlds)]
 
 
 def _world_digest(
-    records: dict[str, np.ndarray], arrays: dict[str, np.ndarray], world: int, worlds: int
+    records: dict[str, np.ndarray],
+    arrays: dict[str, np.ndarray],
+    world: int,
+    worlds: int,
+    islands: Islands,
 ) -> str:
     digest = hashlib.sha256()
     for name in sorted(records):
@@ -60,9 +70,11 @@ def _world_digest(
         if name.startswith("world.worlds."):
             digest.update(np.ascontiguousarray(array[world]).tobytes())
             continue
-        mine = array[world * len(alive) : (world + 1) * len(alive)]
-        for start in range(0, len(alive), BLOCK):
-            living = mine[start : start + BLOCK][alive[start : start + BLOCK]]
+        cells = islands.with_rows(name)
+        mine = array[world * len(cells) : (world + 1) * len(cells)]
+        here = alive[cells.start : cells.stop]
+        for start in range(0, len(cells), BLOCK):
+            living = mine[start : start + BLOCK][here[start : start + BLOCK]]
             digest.update(np.ascontiguousarray(living).tobytes())
     digest.update(np.packbits(alive).tobytes())
     return digest.hexdigest()

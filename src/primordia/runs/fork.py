@@ -31,7 +31,7 @@ from primordia.settings.tables import from_toml, merged, replaced
 
 HARMLESS = {"stop", "fork", "about", "sample_every"}
 """Settings that do not change the course of a world."""
-OF_ANY_LENGTH = "bodies.states"
+OF_ANY_LENGTH = ".states"
 """The array of saved states; all its rows are as long as the longest of these states
 (`habitats.states`)."""
 OF_MUTATION = (".notes", ".moments.")
@@ -182,7 +182,7 @@ def _transplant(before: Engine, old: Config, new: Config, at: int) -> Engine:
 def _form(name: str, arrays: dict[str, np.ndarray]) -> tuple[int, ...]:
     """Return the part of an array's shape that settings determine; () if there is no such array."""
     shape = np.shape(arrays.get(name, 0))
-    return shape[:1] if name == OF_ANY_LENGTH else shape
+    return shape[:1] if name.endswith(OF_ANY_LENGTH) else shape
 
 
 def _adapt(world: World, before: Engine, after: Engine, old: Config, new: Config, at: int) -> World:

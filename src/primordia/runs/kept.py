@@ -7,6 +7,7 @@ moved, sent and lived again without the original files.
 
 import hashlib
 import os
+from collections.abc import Mapping
 from os.path import isfile  # False, and no error, for a name that is too long
 from pathlib import Path
 from typing import NamedTuple
@@ -41,7 +42,7 @@ def copy(config: Config, habitat: AnyHabitat, run: Path) -> Kept:
         Trouble: a file cannot be read or written.
     """
     named = [each for each in files_in(config.habitat) if os.path.isabs(each) and isfile(each)]
-    paths = [Path(path) for each in named for path in habitat.files_with(each)]
+    paths = [Path(path) for path in _with_others(config, {each: each for each in named})]
     if not paths:
         return Kept("", {})
     found_in = Path(os.path.commonpath([path.parent for path in paths]))
@@ -118,9 +119,19 @@ def _places(run: Path, kept: Kept | Description) -> dict[str, str]:
 
 def _needed(config: Config) -> set[str]:
     """Return the paths of the copies that settings name, and of the files that these need."""
-    kind = habitats.find(config.habitat["name"])
-    copies = [config.kept[each] for each in files_in(config.habitat) if each in config.kept]
-    return {path for each in copies for path in kind.files_with(each)}
+    return _with_others(config, config.kept)
+
+
+def _with_others(config: Config, places: Mapping[str, str]) -> set[str]:
+    """Return the files that settings name, at their places, and those that these need."""
+    tables = [each.habitat for each in config.by_island]
+    return {
+        path
+        for table in tables
+        for named in files_in(table)
+        if named in places
+        for path in habitats.find(table["name"]).files_with(places[named])
+    }
 
 
 def _sha256(path: Path) -> str:

@@ -30,7 +30,7 @@ LEAST = {"world.worlds.sample_wait": 1, "world.worlds.looks.wait": 1, "world.wor
 GENOME = "world.organisms.genome."
 """Prefix of the names of the arrays of weights."""
 BODIES = "bodies"
-"""Prefix of the names of a habitat's arrays, which have a row for each cell."""
+"""Prefix of the names of a habitat's arrays, which have a row for each cell, of an island or of all."""
 
 
 class Expected:
@@ -43,6 +43,7 @@ class Expected:
         self._blocks = tuple(about.blocks.items())
         self._kinds = _kinds(self._schema, self._blocks, about.moments, config.seeds, looks)
         self._tally: Kind = "int32", (self._cells, len(about.tallies))
+        self._islands = config.islands
 
     def fault(self, arrays: Arrays) -> str | None:
         """Return a fault: an array is missing, unknown or too small, or a count of a world is
@@ -69,12 +70,16 @@ class Expected:
     def fault_of(self, name: str, array: np.ndarray) -> str | None:
         """Return the fault of an array (type, shape, or a row); None if it fits the settings."""
         kind = self._tally if name == f"{BODIES}.tally" else self._kinds.get(name)
-        if not (array.shape[:1] == (self._cells,) if kind is None else _fits(array, kind)):
+        if not (array.shape[:1] == (self._rows(name),) if kind is None else _fits(array, kind)):
             return f"{name} is {array.dtype} {array.shape}, which does not fit the settings"
         if (least := LEAST.get(name)) is not None and (array < least).any():
             return f"{name} is below {least}"
         folder, _, table = name.partition(".")
         return self._odd_row(table, array) if folder == "tail" else None
+
+    def _rows(self, name: str) -> int:
+        """Return the number of rows of a habitat's array."""
+        return self._worlds * len(self._islands.with_rows(name))
 
     def _odd_row(self, table: str, tail: np.ndarray) -> str | None:
         """Return the fault of an open tail that names a missing world, cell or cause, or None."""

@@ -42,8 +42,8 @@ def verify(run: Archive, listen: Listener | None = None) -> list[str]:
         tell("living again", to_host(engine.state.world.worlds.tick).sum() / lived.sum())
         if listen is not None:
             listen(Status(engine, time.perf_counter() - began))
-    recorded = digests(last.digests, run.state, config.seeds)
-    now = digests(recorder.digests(), engine.arrays(), config.seeds)
+    recorded = digests(last.digests, run.state, config.seeds, config.islands)
+    now = digests(recorder.digests(), engine.arrays(), config.seeds, config.islands)
     other_versions = "".join(f"; {each}" for each in run.other_versions)
     return [
         f"world {world} (seed {config.seed + world}) differs: {old[:16]}... recorded,"

@@ -112,7 +112,18 @@ def code_of(table: dict[str, Any], key: str) -> list[str]:
     imports = table.get(IMPORTS, ())
     listed = [str(each) for each in imports] if isinstance(imports, list | tuple) else []
     given = [*(each for each in named if ":" in each), *listed]
-    return [each for each in given if is_dotted(each.partition(":")[0])]
+    of_islands = [code for inner in habitats_of_islands(table) for code in code_of(inner, key)]
+    own = [each for each in given if is_dotted(each.partition(":")[0])]
+    return list(dict.fromkeys([*own, *of_islands]))
+
+
+def habitats_of_islands(table: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return the tables of the habitats of islands, which a habitat's table may list."""
+    islands = table.get("islands")
+    if not isinstance(islands, list | tuple):
+        return []
+    inner = [each.get("habitat") for each in islands if isinstance(each, dict)]
+    return [each for each in inner if isinstance(each, dict)]
 
 
 def modules_of(table: dict[str, Any], key: str) -> list[str]:
@@ -141,15 +152,19 @@ def _full_paths(folder: Path, table: dict[str, Any]) -> dict[str, Any]:
     for name, value in table.items():
         file = folder / str(value)
         full = str(file.resolve()) if _names_file(name) and isfile(file) else value
-        changed[name] = _full_paths(folder, value) if isinstance(value, dict) else full
+        if isinstance(value, dict):
+            full = _full_paths(folder, value)
+        elif isinstance(value, list):
+            full = [_full_paths(folder, e) if isinstance(e, dict) else e for e in value]
+        changed[name] = full
     return changed
 
 
 def files_in(table: dict[str, Any]) -> list[str]:
     """Return the values of a table that name files, also in inner tables."""
-    inner = [
-        each for value in table.values() if isinstance(value, dict) for each in files_in(value)
-    ]
+    lists = (value if isinstance(value, list | tuple) else [value] for value in table.values())
+    tables = (each for several in lists for each in several if isinstance(each, dict))
+    inner = [file for each in tables for file in files_in(each)]
     own = (value for name, value in table.items() if _names_file(name))
     return inner + [value for value in own if isinstance(value, str)]
 

@@ -142,6 +142,11 @@ class Atari(HostHabitat, Settings):
         return Discrete(len(self._buttons))
 
     @property
+    def buttons(self) -> tuple[str, ...]:
+        """Names of the buttons, in order, such as noop and upfire."""
+        return tuple(name.lower() for name in self._action_names)
+
+    @property
     def words(self) -> int:
         """Number of random words for no-ops and sticky actions; 0 if the settings have neither."""
         return 2 if self.noops or self.sticky else 0

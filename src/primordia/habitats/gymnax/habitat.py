@@ -121,6 +121,11 @@ class Gymnax(JaxHabitat, Settings):
         """Actions of the environment."""
         return self._actions.kind
 
+    @property
+    def buttons(self) -> tuple[str, ...] | None:
+        """Names of the buttons of a game of MinAtar; None for other environments."""
+        return self.simulator.buttons
+
     def original(self) -> "Gymnax":
         """Return the environment as the benchmark scores it: the reward is food, the time limit holds."""
         changed = {"time_limit": True, "fatal": "done", "food": "reward"}

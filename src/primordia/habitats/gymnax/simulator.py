@@ -30,6 +30,10 @@ ADDRESS = re.compile("0x[0-9a-f]+")
 """A pattern for addresses in memory, which JAX prints for some functions."""
 
 
+MINATAR = ("noop", "left", "up", "right", "down", "fire")
+"""Names of the actions of MinAtar (Young & Tian 2019, "n l u r d f"), by their numbers."""
+
+
 class Step(NamedTuple):
     """The result of a tick for a body."""
 
@@ -68,6 +72,14 @@ class Simulator:
                 return self.env.observation_space(self.params)
         except (AttributeError, NotImplementedError):
             return None
+
+    @property
+    def buttons(self) -> tuple[str, ...] | None:
+        """The names of the choices, if the environment is a game of MinAtar; otherwise None."""
+        numbers = getattr(self.env, "action_set", None)
+        if numbers is None or "MinAtar" not in str(getattr(self.env, "name", "")):
+            return None
+        return tuple(MINATAR[number] for number in np.asarray(numbers).tolist())
 
     def reset(self, key: Array) -> tuple[Any, Any]:
         """Return the first observation and state for a key uint32 (2,)."""

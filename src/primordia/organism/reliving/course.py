@@ -6,6 +6,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from primordia.habitats.archipelago import body_in
 from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
 from primordia.organism.reliving.instant import Stretch
@@ -34,9 +35,10 @@ def recorded(life: RelivedLife) -> dict[str, Value]:
         return {"tick": life.ends, "cause": life.cause.label, **_vitals(energy, food), **counts}
     place = life.world * life.config.cells + int(life.record.cell[0])
     state = life.run.state
-    body = [each for each in state if each.startswith(BODIES)]
-    own = [*OWN, *(SENSES if life.habitat.kind == "host" else body)]
-    held = {name: state[name][place : place + 1] for name in own}
+    body = body_in(state, life.config.islands, place)
+    if life.habitat.kind == "host":
+        body = {name: body[name] for name in SENSES}
+    held = {name: state[name][place : place + 1] for name in OWN} | body
     lived = names if life.begins < life.ends else ()
     counts = dict(zip(lived, state[COUNTS][place].tolist(), strict=True)) if lived else {}
     return {"tick": life.ends, "cause": ALIVE, **_of_living(held), **counts}

@@ -10,14 +10,13 @@ import numpy as np
 from PIL import Image, ImageColor, ImageDraw
 
 from primordia.compiled import shared
-from primordia.habitats.changing import changes_at
+from primordia.habitats.changing import changes_at, is_changing
 from primordia.habitats.contract import AnyHabitat
 from primordia.habitats.framed import PAPER, font
 from primordia.law.law import Law
 from primordia.organism.inside import (
     CHANGED,
     acting,
-    is_changing,
     is_shown,
     look_on,
     news_of,

@@ -22,6 +22,7 @@ from primordia.brains.contract import Genome
 from primordia.compiled import shared
 from primordia.config import Config
 from primordia.errors import InputError, Trouble
+from primordia.habitats.archipelago import at, body_in
 from primordia.habitats.contract import AnyHabitat
 from primordia.history.births import place_in
 from primordia.history.climate import PastClimate
@@ -102,7 +103,7 @@ class RelivedLife:
         stored: Mapping[str, np.ndarray] | None = None,
     ) -> "RelivedLife":
         """Prepare a life from its record, a single row, and its genome, float32 (P,); see `of`."""
-        habitat, law, begin = run.habitat, run.law, "the checkpoint"
+        habitat, law, begin = at(run.habitat, int(record.cell[0])), run.law, "the checkpoint"
         if stored is None and is_older(run, record)[0]:
             stored, begin = run.origin, "the fork"
         if stored is not None and not habitat.exact:
@@ -220,7 +221,7 @@ class RelivedLife:
     def _alone(self, watched: bool) -> LifeInJax | LifeOnHost:
         """Return the stepper of brain and body, with a new habitat."""
         mind = Mind(self.genome, self._seed, jnp.asarray(self.record.cell))
-        habitat = self.config.build_habitat()
+        habitat = at(self.config.build_habitat(), int(self.record.cell[0]))
         if habitat.kind == "host":
             return LifeOnHost(self.law, mind, habitat, watched)
         return LifeInJax(self.law, mind, habitat)
@@ -239,8 +240,8 @@ class RelivedLife:
         return Instant(self.memory, vitals, alone.embody(words))
 
     def _restored(self, alone: LifeInJax | LifeOnHost, arrays: Mapping[str, np.ndarray]) -> Instant:
-        cell = self._place(arrays)
-        bodies = {name: array[cell] for name, array in arrays.items() if name.startswith("bodies")}
+        (place,) = self._place(arrays)
+        bodies = body_in(arrays, self.config.islands, place)
         memory, energy, eaten = (self._own(arrays, name) for name in ("memory", "energy", "eaten"))
         return Instant(memory, Vitals(energy, eaten), alone.restore(bodies))
 
