@@ -204,4 +204,9 @@ class Lived:
 
     def digests(self) -> list[str]:
         """Return the digest of each world."""
-        return digests(self.recorder.digests(), self.engine.arrays(), self.config.seeds)
+        return digests(
+            self.recorder.digests(),
+            self.engine.arrays(),
+            self.config.seeds,
+            self.config.islands,
+        )

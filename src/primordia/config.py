@@ -15,6 +15,7 @@ from primordia.brains import contract as brains
 from primordia.brains import genomes
 from primordia.brains.contract import Brain
 from primordia.brains.layout import Layout
+from primordia.by_island import by_island, habitats_of, rates_of_islands
 from primordia.errors import InputError
 from primordia.fitting import check
 from primordia.habitats import contract as habitats
@@ -59,8 +60,6 @@ from primordia.settings.tables import (
 )
 from primordia.settings.values import check_values
 
-MIGRATION = "placement.migration"
-"""The name of a rate that only worlds with islands have."""
 CONTRACTS: dict[str, Any] = {"habitat": habitats, "brain": brains, "mutation": mutations}
 """Name of a replaceable part's table -> the module with the contract of that part."""
 
@@ -157,7 +156,7 @@ class Config(Settings):
         for original, copy in self._kept.items():
             table = replaced(table, original, copy)
         if KEY in table:
-            return archipelago([each.build_habitat() for each in self.by_island], self.islands)
+            return archipelago(habitats_of(self), self.islands)
         own = dict(table)
         changes, factors = own.pop("change", None), own.pop("factors", None)
         habitat = make("habitat", own, habitats.find)
@@ -175,26 +174,7 @@ class Config(Settings):
     @property
     def by_island(self) -> "list[Config]":
         """Return the settings of each island; those of a plain world are its own."""
-        if KEY not in self.habitat:
-            return [self]
-        return [self.of_island(number) for number in range(self.islands.count)]
-
-    def of_island(self, number: int) -> "Config":
-        """Return the settings of a plain world whose cells are all like those of an island.
-
-        Raises:
-            InputError: a setting of the island is wrong; the message names it.
-        """
-        island = tables_of(self.habitat)[number]
-        shared = {name: value for name, value in self.habitat.items() if name != KEY}
-        values = merged(
-            {**self.model_dump(), "habitat": shared}, {"habitat": island.habitat, **island.rates}
-        )
-        try:
-            check_values(values)
-            return Config.model_validate(replaced(values, NONE, None)).keeping(self._kept)
-        except ValidationError as error:
-            raise InputError(f"island {island.name}: {first_fault(error, Config)}") from None
+        return by_island(self)
 
     def build_brain(self, habitat: AnyHabitat) -> Brain:
         """Return the brain of the organisms that live in the habitat."""
@@ -233,7 +213,7 @@ class Config(Settings):
             placement=self.placement,
             metabolism=self.metabolism,
             act=self.act,
-            beginning=tuple({**self._rates(layout), **self._rates_of_islands(layout)}.items()),
+            beginning=tuple({**self.rates(layout), **rates_of_islands(self, layout)}.items()),
             genesis=self.genesis,
             seasons=self.seasons,
             saturation_ticks=self.saturation_ticks,
@@ -251,7 +231,7 @@ class Config(Settings):
             worlds=self.seeds,
         )
 
-    def _rates(self, layout: Layout) -> dict[str, float]:
+    def rates(self, layout: Layout) -> dict[str, float]:
         """Return the settings that seasons may change, by dotted name, without those of islands."""
         mutation = make("mutation", self.mutation, mutations.find)
         return {
@@ -259,18 +239,6 @@ class Config(Settings):
             **{f"mutation.{name}": value for name, value in mutation.rates(layout).items()},
             **rates_of(self.metabolism or Metabolism(), "metabolism."),
         }
-
-    def _rates_of_islands(self, layout: Layout) -> dict[str, float]:
-        """Return the migration, and the rates in which islands differ, as `island.setting`."""
-        if self.islands.count == 1:
-            return {}
-        rates, shared = {MIGRATION: self.placement.migration}, self._rates(layout)
-        for own, island in zip(self.by_island, self.islands.names, strict=True):
-            local = {**own._rates(layout), MIGRATION: own.placement.migration}
-            for name, value in local.items():
-                if value != shared.get(name, self.placement.migration):
-                    rates[f"{island}.{name}"] = value
-        return rates
 
     def code_of(self, part: str) -> list[str]:
         """Return the code that a part's settings name, as `module:name` or as a module."""

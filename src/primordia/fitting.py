@@ -58,7 +58,9 @@ def _check_islands(config: Any, law: Law) -> None:
         raise InputError("placement.migration: this world has no islands; add [[habitat.islands]]")
     if islands.count == 1:
         return
-    for number, island in enumerate(tables_of(config.habitat)):
+    for number, (own, island) in enumerate(
+        zip(config.by_island, tables_of(config.habitat), strict=True)
+    ):
         if mixed and islands.sizes[number] < 2:
             raise InputError(
                 f"habitat.islands.{number}.share: {island.name} gets one cell, in which no child has a"
@@ -76,7 +78,7 @@ def _check_islands(config: Any, law: Law) -> None:
                 " islands"
             )
         try:
-            check(config.of_island(number))
+            check(own)
         except InputError as error:
             raise InputError(f"island {island.name}: {error}") from None
 

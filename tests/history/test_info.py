@@ -166,7 +166,7 @@ def test_the_numbers_of_runs_are_those_of_all_their_worlds(
     def threshold(part: Any) -> list[Threshold]:
         return [Threshold(world, 0.5, 0.0, 4.0 + world) for world in range(part.lives.worlds)]
 
-    def digests(rows: str, state: Any, count: int) -> list[str]:
+    def digests(rows: str, state: Any, count: int, islands: Any) -> list[str]:
         (own,) = (part for part in parts if part.row_digests == rows)
         assert state is own.state
         return [f"{rows}, world {world}" for world in range(count)]

@@ -117,16 +117,17 @@ def moments_of(players: Players, rule: Moments, ticks: int) -> Remembered:
     count, law = len(players.genomes), players.law
     senses = np.zeros((count, rule.kept, law.senses), np.float32)
     memory = np.zeros((count, rule.kept, law.memory), np.float32)
-    known, tick = np.zeros((count, rule.kept), bool), 0
-    for stretch in stretches(players, 1, Manner(ticks, watched=True)):
-        assert stretch.met is not None
-        for row, playing in enumerate(stretch.playing):
-            if (tick + row) % rule.every == 0:
-                place = (tick + row) // rule.every % rule.kept
-                senses[playing, place] = stretch.met.senses[row][playing]
-                memory[playing, place] = stretch.met.memory[row][playing]
-                known[playing, place] = True
-        tick += len(stretch.playing)
-        if not stretch.alive.any():
-            break
+    known = np.zeros((count, rule.kept), bool)
+    for index, here in players.by_island():
+        tick = 0
+        for stretch in stretches(here, 1, Manner(ticks, watched=True)):
+            assert stretch.met is not None
+            for row in range(-tick % rule.every, len(stretch.playing), rule.every):
+                on, place = stretch.playing[row], (tick + row) // rule.every % rule.kept
+                senses[index[on], place] = stretch.met.senses[row][on]
+                memory[index[on], place] = stretch.met.memory[row][on]
+                known[index[on], place] = True
+            tick += len(stretch.playing)
+            if not stretch.alive.any():
+                break
     return Remembered(*map(jnp.asarray, (senses, memory, known)))

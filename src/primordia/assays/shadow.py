@@ -144,4 +144,5 @@ def _lifespans(run: Records, rows: np.ndarray, redrawn: bool, cut: int) -> np.nd
     keys = stream(wide(run.world_seeds[lives.world]), Purpose.REBIRTH, wide(lives.id))
     rates = Rates.of(jax.tree.map(jnp.asarray, climate))
     genomes = pedigree.genomes(run, rows, redrawn)
-    return lifespans(Players(run.law, run.config.build_habitat(), genomes, keys, rates), cut)
+    habitat, island = run.config.build_habitat(), run.config.islands.of_cells(lives.cell)
+    return lifespans(Players(run.law, habitat, genomes, keys, rates, island), cut)

@@ -205,10 +205,12 @@ def _fresh(
     """
     habitat, count = chosen.build_habitat(), len(number)
     law = chosen.build_law(habitat)
-    climate = {name: np.asarray(each) for name, each in initial_climate(law, count).items()}
+    everywhere = {name: np.asarray(each) for name, each in initial_climate(law, count).items()}
+    island = law.islands.of_cells(number % law.cells)
+    climate = law.islands.here(everywhere, island, np.where)
     keys = stream(wide(np.full(count, chosen.seed)), Purpose.EVALUATION, wide(key))
     rates = Rates.of(jax.tree.map(jnp.asarray, climate))
-    players = Players(law, habitat, own, keys, rates)
+    players = Players(law, habitat, own, keys, rates, island)
     notes = np.asarray(law.heredity.mutation.founders_notes(count))
     return Subjects(source, chosen, players, number, np.zeros_like(number), notes, climate)
 

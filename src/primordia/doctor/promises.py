@@ -198,6 +198,4 @@ def _digests(ticks: int, longest: int | None = None, **settings: Any) -> list[st
     limits = engine.limits({"ticks": ticks})
     while engine.any_running(limits):
         recorder.append(engine.advance(limits))
-    return digests(
-        recorder.digests(), engine.arrays(), engine.config.seeds, engine.law.islands
-    )
+    return digests(recorder.digests(), engine.arrays(), engine.config.seeds, engine.law.islands)

@@ -115,7 +115,11 @@ def _embody(law: Law, habitat: JaxHabitat, world: World, bodies: Bodies, newborn
     if not isinstance(habitat, ArchipelagoInJax):
         return _embody_in(habitat, key, range(law.cells), bodies, newborn)
     islands = zip(
-        habitat.habitats, law.islands.cells, bodies.island, split(newborn, bodies.sizes), strict=True
+        habitat.habitats,
+        law.islands.cells,
+        bodies.island,
+        split(newborn, bodies.sizes),
+        strict=True,
     )
     parts = (_embody_in(own, key, cells, of, here) for own, cells, of, here in islands)
     return Parts(tuple(parts), bodies.sizes)

@@ -5,7 +5,7 @@ senses are followed by zeros, and a button or a motor that it lacks does nothing
 bodies are stepped in a batch of their own.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +23,7 @@ from primordia.habitats.contract import (
     Bodies,
     Continuous,
     Discrete,
+    Habitat,
     HostHabitat,
     JaxHabitat,
     Outcome,
@@ -168,10 +169,25 @@ class Parts:
     sizes: tuple[int, ...] = field(metadata={"static": True})
 
 
-class _Archipelago:
+def _common(values: Iterable[Any]) -> Any:
+    """Return the value if all are equal, otherwise None."""
+    different = set(values)
+    return different.pop() if len(different) == 1 else None
+
+
+class Archipelago(Habitat):
     """What archipelagos in JAX and on the host have in common."""
 
     habitats: tuple[Any, ...]
+    senses_size: int
+    action: Action
+    words: int
+    versions: dict[str, str]
+    rate: float | None
+    episode: int | None
+    tallies: tuple[str, ...]
+    exact: bool
+    buttons: tuple[str, ...] | None
 
     def __init__(self, habitats: Sequence[AnyHabitat], islands: Islands) -> None:
         union = _Union.of(habitats, islands.names)
@@ -180,8 +196,8 @@ class _Archipelago:
         self.habitats = tuple(kind(each, union) for each in habitats)
         self.senses_size, self.action, self.words = union.senses, union.action, union.words
         self.buttons = union.buttons or None
-        rates = {each.rate for each in habitats}
-        self.rate = rates.pop() if len(rates) == 1 else None
+        self.rate = _common(each.rate for each in habitats)
+        self.episode = _common(each.episode for each in habitats)
         self.exact = all(each.exact for each in habitats)
         self.versions = {k: v for each in habitats for k, v in each.versions.items()}
         self.tallies = union.tallies
@@ -191,17 +207,22 @@ class _Archipelago:
         return self.habitats, self.islands
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Archipelago) and self._key == other._key
+        return isinstance(other, Archipelago) and self._key == other._key
 
     def __hash__(self) -> int:
         return hash(self._key)
+
+    def original(self) -> Any:
+        """Return the islands as the standard benchmarks score them; None if one has no original."""
+        originals = [each.original() for each in self.habitats]
+        return None if None in originals else type(self)(originals, self.islands)
 
     def lacks(self, ability: Ability) -> list[str]:
         """Return the methods that one of the habitats lacks for an ability."""
         return next((lacks for each in self.habitats if (lacks := each.lacks(ability))), [])
 
 
-class ArchipelagoInJax(_Archipelago, JaxHabitat):
+class ArchipelagoInJax(Archipelago, JaxHabitat):
     """Islands in JAX. Its functions take the bodies of whole worlds, `Parts`."""
 
     def reset(self, words: Array) -> Parts:
@@ -225,7 +246,7 @@ class ArchipelagoInJax(_Archipelago, JaxHabitat):
         return Parts(after, sizes), _outcome(outcomes, sizes)
 
 
-class ArchipelagoOnHost(_Archipelago, HostHabitat):
+class ArchipelagoOnHost(Archipelago, HostHabitat):
     """Islands on the host, stepped one after another."""
 
     def open(self, cells: int, watched: bool = False) -> None:
@@ -345,7 +366,9 @@ def _outcome(outcomes: Sequence[Outcome], sizes: tuple[int, ...]) -> Outcome:
             np.zeros(count, like.dtype) if each is None else each
             for each, count in zip(results, counts, strict=True)
         ]
-        return joined(filled if isinstance(like, np.ndarray) else [*map(jnp.asarray, filled)], sizes)
+        return joined(
+            filled if isinstance(like, np.ndarray) else [*map(jnp.asarray, filled)], sizes
+        )
 
     return Outcome(*map(all_of, *outcomes))
 
@@ -375,6 +398,6 @@ WHERE = {"jax": "in JAX", "host": "on the host"}
 
 def at(habitat: AnyHabitat, cell: int) -> AnyHabitat:
     """Return the habitat of a body in a cell of a world: an island, or the only habitat."""
-    if not isinstance(habitat, _Archipelago):
+    if not isinstance(habitat, Archipelago):
         return habitat
     return habitat.habitats[int(habitat.islands.of_cells(cell))]

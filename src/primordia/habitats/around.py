@@ -26,6 +26,12 @@ class _Around(Habitat):
     senses_size: int
     action: Action
     words: int
+    versions: dict[str, str]
+    rate: float | None
+    episode: int | None
+    tallies: tuple[str, ...]
+    exact: bool
+    buttons: tuple[str, ...] | None
 
     def __init__(self, inner: AnyHabitat, *own: Any) -> None:
         """Wrap a habitat; `own` are all settings of the wrapper, which can be compared and hashed."""
@@ -84,9 +90,7 @@ class AroundJax(_Around, JaxHabitat):
         """Step all bodies by one tick; see `JaxHabitat.step`."""
         return self.inner.step(bodies, action)
 
-    def step_scaled(
-        self, bodies: Bodies, action: Array, factors: Array
-    ) -> tuple[Bodies, Outcome]:
+    def step_scaled(self, bodies: Bodies, action: Array, factors: Array) -> tuple[Bodies, Outcome]:
         """Step bodies with other parameters by one tick; see `JaxHabitat.step_scaled`."""
         return self.inner.step_scaled(bodies, action, factors)
 

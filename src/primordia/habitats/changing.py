@@ -102,7 +102,7 @@ class _Changing:
     action: Action
 
     def __init__(self, inner: Any, changes: tuple[Kind, ...]) -> None:
-        super().__init__(inner, changes)
+        super().__init__(inner, changes)  # type: ignore[call-arg]
         self.changes, self.words = changes, inner.words + WORDS
         scales = any(isinstance(change, Parameter) for change in changes)
         self.scaled = inner.parameters if scales else ()
@@ -235,13 +235,13 @@ def changes_at(habitat: AnyHabitat, body: Bodies, ages: np.ndarray) -> np.ndarra
         body: one body, no first axis, as a picture takes it.
         ages: int (n,), ticks.
     """
-    habitat = inside(habitat, _Changing)
-    if habitat is None:
+    found = inside(habitat, _Changing)
+    if found is None:
         return np.zeros(len(ages), bool)
     age, course = jnp.asarray(ages, jnp.int32), body.course
     key = course.key.map(lambda word: jnp.broadcast_to(word, age.shape))
-    period = jnp.broadcast_to(course.period, (len(ages), len(habitat.changes)))
-    comes = [_comes(change, i, key, age, period) for i, change in enumerate(habitat.changes)]
+    period = jnp.broadcast_to(course.period, (len(ages), len(found.changes)))
+    comes = [_comes(change, i, key, age, period) for i, change in enumerate(found.changes)]
     return np.asarray(jnp.stack(comes).any(axis=0) & (age > 0))
 
 

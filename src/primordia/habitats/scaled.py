@@ -22,18 +22,16 @@ class ScaledInJax(AroundJax):
 
     def __init__(self, inner: JaxHabitat, factors: tuple[float, ...]) -> None:
         super().__init__(inner, factors)
-        self._factors = np.float32(factors)
+        self._factors = np.array(factors, np.float32)
 
     def step(self, bodies: Bodies, action: Array) -> tuple[Bodies, Outcome]:
         """Step all bodies by one tick; see `JaxHabitat.step`."""
         factors = jnp.broadcast_to(self._factors, (len(action), len(self._factors)))
         return self.inner.step_scaled(bodies, action, factors)
 
-    def step_scaled(
-        self, bodies: Bodies, action: Array, factors: Array
-    ) -> tuple[Bodies, Outcome]:
+    def step_scaled(self, bodies: Bodies, action: Array, factors: Array) -> tuple[Bodies, Outcome]:
         """Step bodies whose parameters change by further factors, float32 (N, P)."""
-        return self.inner.step_scaled(bodies, action, self._factors * factors)
+        return self.inner.step_scaled(bodies, action, jnp.asarray(self._factors) * factors)
 
 
 class ScaledOnHost(AroundHost):
@@ -41,7 +39,7 @@ class ScaledOnHost(AroundHost):
 
     def __init__(self, inner: AnyHabitat, factors: tuple[float, ...]) -> None:
         super().__init__(inner, factors)
-        self._factors = np.float32(factors)
+        self._factors = np.array(factors, np.float32)
 
     def open(self, cells: int, watched: bool = False) -> None:
         """Allocate a body for each of N cells; see `HostHabitat.open`."""
@@ -80,5 +78,6 @@ def scaled(habitat: AnyHabitat, factors: Any) -> AnyHabitat:
                 f"habitat.factors.{name}: {factor:g} is not above 0 and at most {LARGEST:g}"
             )
     values = tuple(float(factors.get(name, 1.0)) for name in known)
-    kind = ScaledInJax if isinstance(habitat, JaxHabitat) else ScaledOnHost
-    return kind(habitat, values)
+    if isinstance(habitat, JaxHabitat):
+        return ScaledInJax(habitat, values)
+    return ScaledOnHost(habitat, values)

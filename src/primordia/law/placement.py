@@ -141,9 +141,7 @@ class Placement(Settings):
             wants = wants & ~jnp.take_along_axis(occupied, target, axis=1)
         return _contest(wants, target, priority)
 
-    def _in_rounds(
-        self, draw: Draw, wants: Array, occupied: Array, reach: "Reach | None"
-    ) -> Array:
+    def _in_rounds(self, draw: Draw, wants: Array, occupied: Array, reach: "Reach | None") -> Array:
         """Hold contests until no parent that still wants a child has an empty neighbour."""
 
         def candidates(wants: Array, occupied: Array) -> Array:
@@ -235,7 +233,8 @@ class Reach(NamedTuple):
         """Return the numbers of empty cells before the parent's island and within reach, int32 (W, N)."""
         upto = jnp.pad(jnp.cumsum(empty, axis=1, dtype=jnp.int32), ((0, 0), (1, 0)))
         before, after = (
-            jnp.take_along_axis(upto, place, axis=1) for place in (self.first, self.first + self.size)
+            jnp.take_along_axis(upto, place, axis=1)
+            for place in (self.first, self.first + self.size)
         )
         home = after - before
         return before, jnp.where(self.leaves, upto[:, -1:] - home, home)

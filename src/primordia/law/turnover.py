@@ -79,9 +79,7 @@ def turnover(
     Returns:
         world, events, cells of the newborn (bool (C,)).
     """
-    parent = _place(
-        law, world.worlds, keys[Purpose.PLACE], fates.wants, world.organisms.alive
-    )
+    parent = _place(law, world.worlds, keys[Purpose.PLACE], fates.wants, world.organisms.alive)
     organisms, worlds = _endow(law, world, parent, fates.endowment)
     cause = fates.cause
     cause = jnp.where(organisms.alive & (parent >= 0) & (cause < 0), Cause.REPLACED, cause)

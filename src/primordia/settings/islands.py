@@ -20,7 +20,7 @@ from primordia.settings.fields import first_fault
 Values = TypeVar("Values")
 
 ARRAYS = "island."
-"""Beginning of the names of the arrays of an island's bodies in a state: `island.K` or `island.K.NAME`."""
+"""Beginning of the names of an island's arrays of bodies in a state: `island.K` or `island.K.NAME`."""
 KEY = "islands"
 """The setting of a habitat's table that lists islands; `tables.habitats_of_islands` reads it too."""
 
@@ -143,9 +143,7 @@ class Islands:
         first, _, rest = setting.partition(".")
         return (first, rest) if first in self.names else ("", setting)
 
-    def here(
-        self, climate: Mapping[str, Values], island: Any, where: Any
-    ) -> dict[str, Values]:
+    def here(self, climate: Mapping[str, Values], island: Any, where: Any) -> dict[str, Values]:
         """Return the settings in force in n places, from those of the whole world and of islands.
 
         A setting that differs on an island has a second name in a climate: `island.setting`.

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import jax
 import numpy as np
 
+from primordia.habitats.archipelago import Archipelago
 from primordia.habitats.contract import AnyHabitat
 from primordia.law.law import Law
 from primordia.law.metabolism import Rates
@@ -33,6 +34,20 @@ class Players(NamedTuple):
     """(K,), key of everything random in a player's games"""
     rates: Rates
     """metabolism of each player, each float32 (K,)"""
+    island: np.ndarray | None = None
+    """number of the island on which each player plays, int (K,); None: the habitat has no islands"""
+
+    def by_island(self) -> "Iterator[tuple[np.ndarray, Players]]":
+        """Yield the index of the players of each island, (n,), and these players in its habitat."""
+        if self.island is None:
+            yield np.arange(len(self.genomes)), self
+            return
+        for number in np.unique(self.island).tolist():
+            index = np.flatnonzero(self.island == number)
+            here = self.habitat
+            if isinstance(here, Archipelago):
+                here = here.habitats[number]
+            yield index, self.take(index)._replace(habitat=here)
 
     @property
     def deterministic(self) -> bool:
@@ -41,9 +56,9 @@ class Players(NamedTuple):
 
     def take(self, index: slice | np.ndarray) -> "Players":
         """Return the players at an index."""
-        own = self.genomes, self.keys, self.rates
-        genomes, keys, rates = jax.tree.map(lambda leaf: np.asarray(leaf)[index], own)
-        return self._replace(genomes=genomes, keys=keys, rates=rates)
+        own = self.genomes, self.keys, self.rates, self.island
+        genomes, keys, rates, island = jax.tree.map(lambda leaf: np.asarray(leaf)[index], own)
+        return self._replace(genomes=genomes, keys=keys, rates=rates, island=island)
 
 
 class Games(NamedTuple):
@@ -88,9 +103,12 @@ def play(
         frozen: the inputs of each player, senses and memory, whose values stay as at the start of a game.
         script: earlier games of the same players, whose actions are repeated regardless of senses.
     """
-    parts = _in_parts(players, games, ticks, frozen, script)
+    index, parts = zip(*_in_parts(players, games, ticks, frozen, script), strict=True)
     *arrays, actions = zip(*parts, strict=True)
-    return Games._make([*map(np.concatenate, arrays), list(chain.from_iterable(actions))])
+    order = np.argsort(np.concatenate(index))
+    listed = list(chain.from_iterable(actions))
+    in_order = (np.concatenate(each)[order] for each in arrays)
+    return Games._make([*in_order, [listed[k] for k in order]])
 
 
 def lifespans(players: Players, ticks: int) -> np.ndarray:
@@ -102,20 +120,29 @@ def lifespans_in_games(
     players: Players, games: int, ticks: int, frozen: Frozen | None = None
 ) -> np.ndarray:
     """Return each player's lifespan in each game, in ticks; `ticks` is the limit: int64 (K, E)."""
-    parts = _in_parts(players, games, ticks, frozen, None)
-    return np.concatenate([part.ticks for part in parts])  # the actions of a part are dropped
+    found = np.zeros((len(players.genomes), games), np.int64)
+    for index, part in _in_parts(players, games, ticks, frozen, None):
+        found[index] = part.ticks  # the actions of a part are dropped
+    return found
 
 
 def _in_parts(
     players: Players, games: int, ticks: int, frozen: Frozen | None, script: Games | None
-) -> Iterator[Games]:
-    """Play the games of some players at once, then of the next; a player's games are not separated."""
+) -> Iterator[tuple[np.ndarray, Games]]:
+    """Play the games of some players at once, then of the next; a player's games are not separated.
+
+    Yield the index of these players, (n,), and their games.
+    """
     size = max(AT_ONCE[players.habitat.kind] // games, 1)
-    for first in steps(range(0, len(players.genomes), size), "playing"):
-        some = slice(first, first + size)
-        repeated = script and script._replace(actions=script.actions[some])
+    parts = [
+        (index[first : first + size], here.take(slice(first, first + size)))
+        for index, here in players.by_island()
+        for first in range(0, len(index), size)
+    ]
+    for some, own in steps(parts, "playing"):
+        repeated = script and script._replace(actions=[script.actions[k] for k in some])
         held = frozen and frozen.take(some)
-        yield _play_at_once(players.take(some), games, ticks, held, repeated)
+        yield some, _play_at_once(own, games, ticks, held, repeated)
 
 
 def _play_at_once(
@@ -148,10 +175,10 @@ def _play_at_once(
 def stretches(
     players: Players, games: int, manner: Manner, script: Games | None = None
 ) -> Iterator[Stretch]:
-    """Begin all games of K players, and play them in the manner given for each player."""
+    """Begin all games of K players of one island, and play them in the manner given for each player."""
     law, habitat = players.law, players.habitat
     player = np.repeat(np.arange(len(players.genomes)), games)
-    genomes, keys, rates = players.take(player)[2:]
+    genomes, keys, rates, _ = players.take(player)[2:]
     game = np.tile(np.arange(games, dtype=np.int32), len(players.genomes))
     seated = Seats(genomes, keys, game, rates)
     repeated = None if script is None else lambda tick: script.actions_at(tick)[player]

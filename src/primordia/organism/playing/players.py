@@ -24,13 +24,14 @@ def players_of(run: Records, organisms: Sequence[tuple[int, int]]) -> Players:
     genomes = rebuild_all(run, organisms)
     lives = run.lives.take(np.array([run.lives.row(*each) for each in organisms]))
     climate = PastClimate(run).of_lives(lives, run.ends[lives.world])
-    return _players(run, genomes, evaluation_keys(run, lives.world, lives.id), climate)
+    keys = evaluation_keys(run, lives.world, lives.id)
+    return _players(run, genomes, keys, climate, lives.cell)
 
 
 def founders_of(
     run: Records, worlds: np.ndarray, counts: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, Players]:
-    """Return alternative founders of worlds, each with a different key.
+    """Return alternative founders of worlds, each with a different key, spread evenly over all cells.
 
     Args:
         run: the run, or an arm.
@@ -42,9 +43,10 @@ def founders_of(
     """
     world, number = np.repeat(worlds, counts), np.concatenate([np.arange(n) for n in counts])
     genomes = [founders(run, *each) for each in zip(worlds.tolist(), counts.tolist(), strict=True)]
-    climate = PastClimate(run).of_worlds(world, run.ends[world])
+    cell = number * run.config.cells // np.repeat(counts, counts)
+    climate = PastClimate(run).of_cells(world, cell, run.ends[world])
     keys = stream(wide(run.world_seeds[world]), Purpose.CONTROL, wide(number))
-    return world, number, _players(run, np.concatenate(genomes), keys, climate)
+    return world, number, _players(run, np.concatenate(genomes), keys, climate, cell)
 
 
 def evaluation_keys(run: Records, world: np.ndarray, number: np.ndarray) -> Wide:
@@ -53,7 +55,12 @@ def evaluation_keys(run: Records, world: np.ndarray, number: np.ndarray) -> Wide
 
 
 def _players(
-    run: Records, genomes: np.ndarray, keys: Wide, climate: Mapping[str, np.ndarray]
+    run: Records,
+    genomes: np.ndarray,
+    keys: Wide,
+    climate: Mapping[str, np.ndarray],
+    cells: np.ndarray,
 ) -> Players:
     rates = Rates.of({name: jnp.asarray(values) for name, values in climate.items()})
-    return Players(run.law, run.config.build_habitat(), genomes, keys, rates)
+    island = run.config.islands.of_cells(cells)
+    return Players(run.law, run.config.build_habitat(), genomes, keys, rates, island)
