@@ -3,7 +3,7 @@
     python benchmarks/bench.py [--json FILE] [--only SECTION,...]
 
 Sections: paper, speed, plain, live, cells, operators, atari, courses, robots, gymnasium, gymnax, craftax,
-jobs, campaign, cores, bookkeeping, shell, records.
+islands, jobs, campaign, cores, bookkeeping, shell, records.
 
 Compare speeds within one run only. Machines differ, and one machine differs from hour to hour.
 """
@@ -19,6 +19,7 @@ import campaigns
 import courses
 import functional
 import hosted
+import islands
 import jobs
 import operators
 import paper
@@ -40,6 +41,7 @@ SECTIONS = {
     "gymnasium": hosted.against_gymnasium,
     "gymnax": functional.against_our_cartpole,
     "craftax": functional.against_the_bare_loop,
+    "islands": islands.against_islands_alone,
     "jobs": jobs.against_bare_simulators,
     "campaign": campaigns.jobs_against_runs,
     "cores": campaigns.all_cores_against_one,

@@ -1,0 +1,158 @@
+"""Are natives of islands in a row adapted to their home? Reciprocal transplants, and clines of weights.
+
+    python experiments/adaptation.py experiments/archipelago/gravity.toml
+
+The experiment must have been run (`primordia experiment`), and its islands are in the order of a physical
+parameter. In each world EACH late-born natives of each island live again, alone, on every island, GAMES
+games of at most TICKS ticks, without accidents; so do EACH founders. The far end of an island is the
+first or the last island, whichever is farther.
+
+A cline is a change of weights along the islands. Its strength in a block of weights is the share of the
+variance among the natives that a straight line over the islands' numbers explains. Neutral shadows have
+the natives' pedigree and as many mutations, but no selection. A table and a figure go to `results/`
+beside the file.
+"""
+
+from pathlib import Path
+
+import named
+import numpy as np
+import pandas as pd
+from by_world import Row, measure
+from matplotlib.figure import Figure
+
+from primordia.assays.subjects import spaced
+from primordia.assays.transplant import Transplant, transplant
+from primordia.comparison.pairs import sign_test
+from primordia.figures import style
+from primordia.history import pedigree
+from primordia.runs.records import Records
+
+EACH, GAMES, TICKS = 20, 3, 5_000
+LATE = 0.5
+HOME, FAR, RATIO = "home", "far end", "home / far end"
+FOREIGN, LOCAL = "foreigners", "local / foreign"
+CLINE, SHADOW = "cline of", "shadow of"
+NOTE = (
+    f"Home, far end: ticks that {EACH} late-born natives of each island live there, means over islands"
+    f" of at most {TICKS:,} ticks. Foreigners: ticks that natives of all other islands live on an island."
+    " Local / foreign and home / far end are ratios of these means. Cline of a block of weights: share of"
+    " the variance among natives that a straight line along the islands explains; shadows are neutral."
+)
+
+
+def report(file: Path) -> None:
+    """Measure all arms of an experiment, and write the table and the figure."""
+    stem = measure(file, "adaptation", rows_of, NOTE)
+    rows = pd.read_csv(stem.with_suffix(".csv"))
+    text = stem.with_suffix(".md").read_text(encoding="utf-8")
+    stem.with_suffix(".md").write_text(f"{text.rstrip()}\n\n{_signs(rows)}\n", encoding="utf-8")
+    with style.applied():
+        style.save(drawn(rows), stem)
+    stem.with_suffix(".svg").unlink()
+
+
+def rows_of(run: Records) -> list[Row]:
+    """Return a row for each world."""
+    rows = []
+    for each in transplant(run, EACH, LATE, GAMES, TICKS):
+        rows.append(
+            {"seed": int(run.world_seeds[each.world]), **_lives(each), **_clines(run, each.world)}
+        )
+    return rows
+
+
+def _lives(each: Transplant) -> Row:
+    last, natives = len(each.islands) - 1, each.lived[:-1]
+    far = [last if k <= last / 2 else 0 for k in range(last + 1)]
+    home = np.diag(natives)
+    others = natives.copy()
+    np.fill_diagonal(others, np.nan)
+    foreign, away = np.nanmean(others), natives[np.arange(last + 1), far].mean()
+    found = {
+        HOME: home.mean(),
+        FAR: away,
+        RATIO: home.mean() / away,
+        FOREIGN: foreign,
+        LOCAL: home.mean() / foreign,
+        "founders": each.lived[-1].mean(),
+    }
+    by_island = zip(each.islands, home, strict=True)
+    return {k: round(float(v), 3) for k, v in found.items()} | {
+        f"home on {name}": round(float(own), 1) for name, own in by_island
+    }
+
+
+def _clines(run: Records, world: int) -> Row:
+    """Return the strength of the cline in each block of weights, and of its neutral shadow."""
+    lives, islands = run.lives, run.config.islands
+    late = np.flatnonzero(lives.late(LATE) & (lives.world == world) & lives.inherited)
+    home = islands.of_cells(lives.cell[late])
+    rows = np.concatenate([spaced(late[home == k], EACH) for k in range(islands.count)])
+    place = islands.of_cells(lives.cell[rows]).astype(float)
+    found: Row = {}
+    for name, redrawn in ((CLINE, False), (SHADOW, True)):
+        genomes = pedigree.genomes(run, rows, redrawn).astype(np.float64)
+        blocks = run.layout.split(genomes)
+        for block, weights in blocks.items():
+            found[f"{name} {block}"] = round(_explained(place, weights.reshape(len(rows), -1)), 4)
+    return found
+
+
+def _explained(place: np.ndarray, weights: np.ndarray) -> float:
+    """Return the share of the variance of weights (n, w) that a straight line over places (n,) explains."""
+    x, y = place - place.mean(), weights - weights.mean(axis=0)
+    total = np.square(y).sum()
+    return float(np.square(x @ y).sum() / np.square(x).sum() / total) if total > 0 else 0.0
+
+
+def _signs(rows: pd.DataFrame) -> str:
+    """Return for each arm and block in how many worlds the cline is stronger than its shadow."""
+    lines = []
+    blocks = [name.removeprefix(f"{CLINE} ") for name in rows if name.startswith(CLINE)]
+    for arm, worlds in rows.groupby("arm", sort=False):
+        for block in blocks:
+            more = int((worlds[f"{CLINE} {block}"] > worlds[f"{SHADOW} {block}"]).sum())
+            p = sign_test(more, len(worlds) - more)
+            lines.append(
+                f"{arm}, {block}: stronger in {more} of {len(worlds)} worlds (p = {p:.2g})."
+            )
+    return "Clines against their shadows. " + " ".join(lines)
+
+
+def drawn(rows: pd.DataFrame) -> Figure:
+    """Draw natives' life at home, at the far end and of foreigners in each arm, and the clines."""
+    arms = list(dict.fromkeys(rows["arm"]))
+    figure = Figure(figsize=(style.PAGE, 2.8))
+    lives, clines = figure.subplots(1, 2, width_ratios=(1.2, 1))
+    colours = {HOME: style.BLUE, FOREIGN: style.ORANGE, FAR: style.VERMILION}
+    _dots(lives, rows, arms, colours)
+    style.logarithmic(lives.yaxis)
+    lives.set_ylabel("ticks lived")
+    style.title(lives, "Natives born again", colours)
+    of_clines = rows[rows["arm"] == arms[0]]
+    blocks = [name.removeprefix(f"{CLINE} ") for name in rows if name.startswith(CLINE)]
+    both = {CLINE: style.BLUE, SHADOW: style.SOFT}
+    for shift, (kind, colour) in enumerate(both.items()):
+        for place, block in enumerate(blocks):
+            values = np.sort(of_clines[f"{kind} {block}"])
+            x = place + 0.36 * (shift - 0.5) + np.linspace(-0.12, 0.12, len(values))
+            clines.plot(x, values, ".", color=colour, markersize=4, markeredgewidth=0)
+    clines.set_xticks(range(len(blocks)), blocks)
+    clines.set(ylim=(0, None), ylabel="share of variance along the islands")
+    named_kinds = {"natives": style.BLUE, "neutral shadows": style.SOFT}
+    style.title(clines, f"Clines of weights, {arms[0]}", named_kinds)
+    return figure
+
+
+def _dots(axes, rows: pd.DataFrame, arms: list[str], colours: dict[str, str]) -> None:
+    for place, arm in enumerate(arms):
+        for shift, (name, colour) in enumerate(colours.items()):
+            values = np.sort(rows.loc[rows["arm"] == arm, name])
+            x = place + 0.26 * (shift - 1) + np.linspace(-0.1, 0.1, len(values))
+            axes.plot(x, values, ".", color=colour, markersize=4, markeredgewidth=0)
+    axes.set_xticks(range(len(arms)), arms)
+
+
+if __name__ == "__main__":
+    named.for_each_named(report, __doc__)
