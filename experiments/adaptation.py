@@ -100,7 +100,7 @@ def _clines(run: Records, world: int) -> Row:
 
 
 def _explained(place: np.ndarray, weights: np.ndarray) -> float:
-    """Return the share of the variance of weights (n, w) that a straight line over places (n,) explains."""
+    """Return the share of the variance of weights (n, w) that a line over places (n,) explains."""
     x, y = place - place.mean(), weights - weights.mean(axis=0)
     total = np.square(y).sum()
     return float(np.square(x @ y).sum() / np.square(x).sum() / total) if total > 0 else 0.0
