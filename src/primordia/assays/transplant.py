@@ -121,9 +121,7 @@ def islands_of(run: Records) -> Any:
     return islands
 
 
-def everywhere(
-    run: Records, players: Players, world: int, games: int, ticks: int
-) -> np.ndarray:
+def everywhere(run: Records, players: Players, world: int, games: int, ticks: int) -> np.ndarray:
     """Return the mean ticks that organisms of a world live on each island, float64 (n, K).
 
     Each island has the settings that it has at the end of the records.
