@@ -141,4 +141,6 @@ def everywhere(run: Records, players: Players, world: int, games: int, ticks: in
 
 def plain(values: np.ndarray) -> list:
     """Return an array as lists for JSON; None stands for NaN."""
-    return np.where(np.isfinite(values), values.astype(object), None).tolist()
+    listed = values.astype(object)
+    listed[~np.isfinite(values)] = None
+    return listed.tolist()
