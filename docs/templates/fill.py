@@ -247,6 +247,7 @@ def pages() -> dict[Path, str]:
         settings=reference.settings,
         parts=reference.parts,
         changes=reference.changes,
+        islands=reference.islands,
         seasons=reference.seasons,
     )
     filler.filters.update(number=number_text)

@@ -20,6 +20,7 @@ from primordia.config import CONTRACTS, Config
 from primordia.habitats.change import (
     Change,
     InvertSenses,
+    Parameter,
     PermuteActions,
     ReverseActions,
     Weaken,
@@ -27,10 +28,11 @@ from primordia.habitats.change import (
 from primordia.law.seasons import Ratchet, Schedule
 from primordia.settings.base import SEASONAL
 from primordia.settings.fields import setting_fields
+from primordia.settings.islands import Island
 from primordia.settings.tables import NONE, PARTS, replaced
 
 SEASONS = (Schedule, Ratchet)
-CHANGES = (ReverseActions, PermuteActions, Weaken, InvertSenses)
+CHANGES = (ReverseActions, PermuteActions, Weaken, InvertSenses, Parameter)
 NO_SETTINGS = ("task", "about", "fork.run", "fork.tick", *PARTS)
 """Fields of a run's settings that are no settings of their own."""
 WORDS = {int: "whole number", float: "number", str: "text", bool: "true or false"}
@@ -75,6 +77,11 @@ def changes() -> str:
         own = {path: field for path, field in fields.items() if path not in when}
         tables.append(f"`{name}`: {_first_line(kind)}" + (f"\n\n{_table(own)}" if own else ""))
     return "\n\n".join(tables)
+
+
+def islands() -> str:
+    """Return a table of the settings of an island."""
+    return _table(setting_fields(Island))
 
 
 def _all(command: click.Command, path: str) -> Iterator[tuple[click.Command, str]]:

@@ -32,7 +32,6 @@ def _of_island(config: Any, number: int) -> Any:
     shared = {name: value for name, value in config.habitat.items() if name != KEY}
     own = {"habitat": island.habitat, **island.rates}
     values = merged({**config.model_dump(), "habitat": shared}, own)
-    values["placement"]["migration"] = 0.0
     seasons = ((config.islands.split(each["setting"]), each) for each in values["seasons"])
     values["seasons"] = tuple(
         {**each, "setting": setting}
@@ -41,10 +40,12 @@ def _of_island(config: Any, number: int) -> Any:
     )
     try:
         check_values(values)
-        return type(config).model_validate(replaced(values, NONE, None)).keeping(config.kept)
+        own = type(config).model_validate(replaced(values, NONE, None)).keeping(config.kept)
     except ValidationError as error:
         fault = first_fault(error, type(config))
         raise InputError(f"island {island.name}: {fault}") from None
+    placement = own.placement.model_copy(update={"migration": 0.0})
+    return own.model_copy(update={"placement": placement})
 
 
 def habitats_of(config: Any) -> list[AnyHabitat]:

@@ -88,9 +88,12 @@ def _check_own_code(config: Any, habitat: AnyHabitat) -> None:
     """Trace the parts of the user's own. To trace an environment of a library can take seconds."""
     modules = {part: {each.partition(":")[0] for each in config.code_of(part)} for part in PARTS}
     own = {part for part in PARTS if modules[part] - {*LIBRARIES}}
-    if "habitat" in own and isinstance(habitat, JaxHabitat):
-        if not isinstance(habitat, Archipelago):  # islands are checked one by one
-            check_arrays(habitat)
+    if (
+        "habitat" in own
+        and isinstance(habitat, JaxHabitat)
+        and not isinstance(habitat, Archipelago)  # islands are checked one by one
+    ):
+        check_arrays(habitat)
     if "brain" in own:
         check_brain(config.build_brain(habitat), *config.sizes(habitat))
     if "mutation" in own:

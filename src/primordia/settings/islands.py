@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import Annotated, Any, TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from pydantic import Field, TypeAdapter, ValidationError
@@ -30,12 +30,11 @@ class Island(Settings):
 
     name: str = Field(pattern=r"^[a-z][a-z0-9-]*$", max_length=32, description="its name")
     share: float = Field(1.0, gt=0, le=1e6, description="cells, in proportion to other islands")
-    habitat: dict[str, Any] = Field({}, description="settings of the habitat")
-    factors: dict[str, Annotated[float, Field(gt=0, le=1e6)]] = Field(
-        {}, description="physical parameters of the habitat -> factor, such as gravity = 2.0"
+    habitat: dict[str, Any] = Field({}, description="settings of its habitat, also `factors`")
+    hazard: float | None = Field(None, description="chance of an accident in a tick, as in a task")
+    replication: float | dict[str, Any] | None = Field(
+        None, description="chance of a copy in a tick, or a table, as in a task"
     )
-    hazard: float | None = Field(None, description="as in a task")
-    replication: float | dict[str, Any] | None = Field(None, description="as in a task")
     metabolism: dict[str, Any] = Field({}, description="rates of the metabolism")
     mutation: dict[str, Any] = Field({}, description="rates of the mutation")
     placement: dict[str, Any] = Field({}, description="`migration` of children born here")
@@ -43,7 +42,7 @@ class Island(Settings):
     @property
     def rates(self) -> dict[str, Any]:
         """The tables and settings of a task in which the island differs, without the habitat."""
-        own = self.model_dump(exclude={"name", "share", "habitat", "factors"})
+        own = self.model_dump(exclude={"name", "share", "habitat"})
         return {name: value for name, value in own.items() if value not in (None, {})}
 
 
