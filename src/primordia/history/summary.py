@@ -50,7 +50,7 @@ def _one_world(world: dict[str, Any]) -> list[str]:
         lines.append(f"    tallies of the living: {_tallies(world['tallies'])}")
     if world["fixation"]:
         lines.append(f"    one common ancestor since {_when(world['fixation'])}")
-    lines += _act([world]) + _threshold([world])
+    lines += _act([world]) + _threshold([world]) + _islands([world])
     if world["saturation"]:
         return [*lines, f"    saturated at {_when(world['saturation'])}"]
     return [*lines, "    not saturated"]
@@ -128,7 +128,31 @@ def _all_worlds(worlds: list[dict[str, Any]]) -> list[str]:
         f"    {_share(worlds, 'saturation', 'saturated')}",
         *_act(worlds),
         *_threshold(worlds),
+        *_islands(worlds),
     ]
+
+
+def _islands(worlds: list[dict[str, Any]]) -> list[str]:
+    """Return a line for each island: sums over worlds, and medians over worlds; none without islands."""
+    lines = []
+    for each in zip(*(world.get("islands", []) for world in worlds), strict=True):
+        living, cells, births, immigrants = (
+            sum(island[name] for island in each)
+            for name in ("living", "cells", "births", "immigrants")
+        )
+        came = "1 immigrant" if immigrants == 1 else f"{immigrants:,} immigrants"
+        lines.append(
+            f"    {each[0]['name']}: {living:,} / {cells:,} alive, {births:,} births, {came}"
+            + _over_worlds("mean age", [island["mean_age"] for island in each])
+            + _over_worlds("median lifespan", [island["median_lifespan"] for island in each])
+        )
+    return lines
+
+
+def _over_worlds(words: str, values: list[float | None]) -> str:
+    """Return a number of one world, or the median over worlds; "" if no world has one."""
+    known = [value for value in values if value is not None]
+    return f", {words} {np.median(known):,.0f}" if known else ""
 
 
 def _threshold(worlds: list[dict[str, Any]]) -> list[str]:
