@@ -169,7 +169,9 @@ def invented(monkeypatch: pytest.MonkeyPatch) -> Any:
     lives.inherited[[0, 1, 32, 33]] = True
     monkeypatch.setattr(controls, "players_of", lambda run, numbers: numbers)
 
-    def founders_of(_: Any, worlds: np.ndarray, counts: np.ndarray) -> tuple:
+    def founders_of(
+        _: Any, worlds: np.ndarray, counts: np.ndarray, island: str | None = None
+    ) -> tuple:
         world = np.repeat(worlds, counts)
         number = np.concatenate([np.arange(count) for count in counts])
         return world, number, Seats(np.arange(len(world)))

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from primordia.comparison import comparison as module
-from primordia.comparison.comparison import compare, differing
+from primordia.comparison.comparison import compare
+from primordia.comparison.differing import differing
 from primordia.comparison.measured import Measured
 from primordia.comparison.moments import saturation
 from primordia.comparison.pace import Gathering

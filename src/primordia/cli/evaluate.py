@@ -113,8 +113,10 @@ def evaluate(
     options |= {} if on is None else {"on": on}
     if organism is not None:
         result = opened.organism(organism, world or 0).evaluate(**options)
-        text = evaluation_text(result, habitat, _places(None, on))
-        click.echo(json.dumps(result.to_dict()) if as_json else text)
+        if as_json:
+            click.echo(json.dumps(result.to_dict()))
+        else:
+            click.echo(evaluation_text(result, habitat, _places(None, on)))
         return
     number: Any = {} if founders is None else {"founders": founders}
     found = opened.standings(world=world, island=island, **number, **options)

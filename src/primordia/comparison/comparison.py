@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from primordia.comparison.contrast import Contrast, contrast, plain
+from primordia.comparison.differing import differing
 from primordia.comparison.measured import Measured
 from primordia.comparison.moments import first_long, often_saturated, saturation
 from primordia.comparison.pace import Gathering, Pace, gathering, pace
@@ -28,7 +29,6 @@ from primordia.history.extinctions import Extinctions, extinctions
 from primordia.history.islands import born_on
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
-from primordia.settings.tables import flat
 
 OUTCOMES = {
     "first": "births to first long life",
@@ -229,7 +229,7 @@ def _natives(run: Records, begin: int, end: int, island: str) -> Lives:
     if len(empty := np.setdiff1d(np.arange(run.config.seeds), lives.world)):
         raise InputError(
             f"--island {island}: nothing has lived there in world {empty[0]} of {run.path} up to tick"
-            f" {end:,}, so its worlds cannot be compared"
+            f" {end:,}, so worlds cannot be compared; genesis `fill` gives founders to every island"
         )
     return lives
 
@@ -284,14 +284,3 @@ def _configs(runs: Sequence[Records]) -> list[Config]:
                 f" {run.config.task}; only runs of one task can be compared"
             )
     return [run.config for run in runs]
-
-
-def differing(configs: Sequence[Config]) -> list[dict[str, Any]]:
-    """Return, for each configuration, the settings in which the configurations differ."""
-    ignored: Any = {"about": True, "fork": {"run"}}  # texts, and the name of a folder
-    each = [flat(config.model_dump(mode="json", exclude=ignored)) for config in configs]
-    names = dict.fromkeys(name for settings in each for name in settings)
-    different = [
-        name for name in names if any(settings.get(name) != each[0].get(name) for settings in each)
-    ]
-    return [{name: settings.get(name) for name in different} for settings in each]

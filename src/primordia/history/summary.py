@@ -11,6 +11,8 @@ from primordia.history.series import quantile
 
 MAX_LISTED = 4
 """Largest number of worlds that are described one by one."""
+AGES = ("mean age", "median lifespan")
+"""Numbers of an island that are medians over worlds; others are sums."""
 MAX_RANGES = 4
 """Largest number of ranges of seeds that are listed."""
 
@@ -141,18 +143,21 @@ def _islands(worlds: list[dict[str, Any]]) -> list[str]:
             for name in ("living", "cells", "births", "immigrants")
         )
         came = "1 immigrant" if immigrants == 1 else f"{immigrants:,} immigrants"
+        over = "; medians over worlds: " if len(each) > 1 else ", "
+        ages = [
+            _median(words, [island[words.replace(" ", "_")] for island in each]) for words in AGES
+        ]
         lines.append(
             f"    {each[0]['name']}: {living:,} / {cells:,} alive, {births:,} births, {came}"
-            + _over_worlds("mean age", [island["mean_age"] for island in each])
-            + _over_worlds("median lifespan", [island["median_lifespan"] for island in each])
+            + (over + ", ".join(filter(None, ages)) if any(ages) else "")
         )
     return lines
 
 
-def _over_worlds(words: str, values: list[float | None]) -> str:
+def _median(words: str, values: list[float | None]) -> str:
     """Return a number of one world, or the median over worlds; "" if no world has one."""
     known = [value for value in values if value is not None]
-    return f", {words} {np.median(known):,.0f}" if known else ""
+    return f"{words} {np.median(known):,.0f}" if known else ""
 
 
 def _threshold(worlds: list[dict[str, Any]]) -> list[str]:
