@@ -86,7 +86,7 @@ def _lives(each: Transplant) -> Row:
 def _clines(run: Records, world: int) -> Row:
     """Return the strength of the cline in each block of weights, and of its neutral shadow."""
     lives, islands = run.lives, run.config.islands
-    late = np.flatnonzero(lives.late(LATE) & (lives.world == world) & lives.inherited)
+    late = np.flatnonzero(lives.late(LATE) & (lives.world == world))
     home = islands.of_cells(lives.cell[late])
     rows = np.concatenate([spaced(late[home == k], EACH) for k in range(islands.count)])
     place = islands.of_cells(lives.cell[rows]).astype(float)

@@ -122,7 +122,7 @@ class Mirror(OnHost):
     """A JAX habitat on the host. Its bodies are stored under a name that enters old digests."""
 
     def __init__(self, inner: str = "cartpole", **options: Any) -> None:
-        kinds = {"cartpole": CartPole, "mill": Mill, "meadow": Meadow}
+        kinds = {"cartpole": CartPole, "mill": Mill, "meadow": Meadow, "watch": Watch}
         super().__init__(kinds[inner](**options))
 
     def save(self) -> dict[str, np.ndarray]:

@@ -35,7 +35,9 @@ def _of_island(config: Any, number: int) -> Any:
     values["placement"]["migration"] = 0.0
     seasons = ((config.islands.split(each["setting"]), each) for each in values["seasons"])
     values["seasons"] = tuple(
-        {**each, "setting": setting} for (of, setting), each in seasons if of in ("", island.name)
+        {**each, "setting": setting}
+        for (of, setting), each in seasons
+        if of in ("", island.name) and setting != MIGRATION
     )
     try:
         check_values(values)

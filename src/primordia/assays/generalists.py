@@ -73,7 +73,9 @@ class Generalists:
         for island in self.islands:
             has = [island in each.mastered for each in self.line]
             if has[-1]:
-                last_without = max((k for k, mastered in enumerate(has) if not mastered), default=-1)
+                last_without = max(
+                    (k for k, mastered in enumerate(has) if not mastered), default=-1
+                )
                 found.append((self.line[last_without + 1], island))
         return sorted(found, key=lambda pair: pair[0].generation)
 
@@ -157,7 +159,9 @@ def _line(
             island=islands.names[int(islands.of_cells(chosen.cell[k]))],
             lived=tuple(lived[k].tolist()),
             mastered=tuple(
-                name for name, own, of in zip(islands.names, lived[k], best, strict=True) if own > of
+                name
+                for name, own, of in zip(islands.names, lived[k], best, strict=True)
+                if own > of
             ),
         )
         for k in range(len(places))

@@ -121,9 +121,7 @@ def islands_of(run: Records) -> Any:
     return islands
 
 
-def everywhere(
-    run: Records, players: Players, world: int, games: int, ticks: int
-) -> np.ndarray:
+def everywhere(run: Records, players: Players, world: int, games: int, ticks: int) -> np.ndarray:
     """Return the mean ticks that organisms of a world live on each island, float64 (n, K).
 
     Each island has the settings that it has at the end of the records.
@@ -143,4 +141,6 @@ def everywhere(
 
 def plain(values: np.ndarray) -> list:
     """Return an array as lists for JSON; None stands for NaN."""
-    return np.where(np.isfinite(values), values.astype(object), None).tolist()
+    listed = values.astype(object)
+    listed[~np.isfinite(values)] = None
+    return listed.tolist()

@@ -1,0 +1,155 @@
+"""Worlds with islands keep the promises, and are the sum of their islands."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import primordia
+from primordia.habitats.archipelago import at
+from primordia.organism.playing.games import lifespans
+from primordia.organism.playing.players import players_of
+from primordia.organism.reliving.compare import relive
+from primordia.runs.archive import Archive
+from primordia.runs.digest import digests as digests_of
+from tests.engine.test_strange import digests, live_in_parts
+from tests.history.test_rebuilding import assert_rebuilt
+from tests.strange import TICKS
+from tests.worlds import MILL, Lived, config
+
+WHEELS: dict[str, Any] = {
+    **MILL,
+    "habitat": {
+        "name": "tests.toys:Mill",
+        "islands": [
+            {"name": "mill", "share": 2.0},
+            {
+                "name": "watch",
+                "habitat": {"name": "tests.toys:Watch"},
+                "hazard": 0.08,
+                "metabolism": {"store": 20.0},
+                "mutation": {"scale": 0.01},
+                "placement": {"migration": 0.5},
+            },
+            {"name": "slow", "replication": 0.2},
+        ],
+    },
+    "brain": {"hidden": 2},
+    "seeds": 2,
+    "replication": 0.4,
+    "placement": {"topology": "well-mixed", "rule": "empty-only", "migration": 0.05},
+    "seasons": [
+        *MILL["seasons"],
+        {"kind": "schedule", "setting": "watch.hazard", "at": 150, "value": 0.02},
+        {"kind": "schedule", "setting": "placement.migration", "at": 200, "value": 0.3},
+        {"kind": "ratchet", "setting": "slow.replication", "when": "mean_age", "above": 1.0,
+         "factor": 0.9, "every": 60},
+    ],
+}  # fmt: skip
+"""Two worlds with three islands: two habitats with other senses, actions and random words."""
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("islands") / "run"
+    live_in_parts(WHEELS, path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def lived() -> Lived:
+    return Lived(config(WHEELS), TICKS, chunk=11)
+
+
+def test_parts_and_chunks_of_any_length_make_the_same_run(run: Path, lived: Lived) -> None:
+    assert digests(run) == lived.digests()
+    assert len(set(lived.digests())) == 2
+    assert primordia.load(run).verify() == []
+    assert_rebuilt(run)
+
+
+def test_a_habitat_on_the_host_lives_the_same_lives(lived: Lived) -> None:
+    islands = [
+        {**island, "habitat": {"name": "tests.toys:Mirror", "inner": inner}}
+        for island, inner in zip(
+            WHEELS["habitat"]["islands"], ("mill", "watch", "mill"), strict=True
+        )
+    ]
+    hosted = Lived(config({**WHEELS, "habitat": {"islands": islands}}), TICKS)
+    for name in ("births", "deaths", "metrics"):
+        mine, other = lived.table(name), hosted.table(name)
+        assert mine.keys() == other.keys()
+        for column, values in mine.items():
+            np.testing.assert_array_equal(values, other[column], column)
+
+
+def test_organisms_of_every_island_live_again(run: Path) -> None:
+    opened = Archive(run)
+    lives, islands = opened.lives, opened.config.islands
+    home = islands.of_cells(lives.cell)
+    for number in range(islands.count):
+        for died in (True, False):
+            rows = np.flatnonzero((home == number) & (lives.died == died))
+            assert len(rows) > 1
+            for row in rows[-3:]:
+                life = relive(opened, int(lives.id[row]), int(lives.world[row]))
+                assert life.agrees, life.respects
+
+
+def test_a_life_goes_on_from_a_checkpoint_and_in_a_fork(run: Path, tmp_path: Path) -> None:
+    before, out = primordia.load(run), tmp_path / "fork"
+    fork = Archive(before.fork(200, out, stop={"ticks": TICKS}).path)
+    whole = Archive(run)
+    state = (whole.state, 2, whole.config.islands), (fork.state, 2, fork.config.islands)
+    assert digests_of({}, *state[0]) == digests_of({}, *state[1]), "it lives the same"
+    older = np.flatnonzero(fork.lives.inherited & (fork.lives.ended > 200))
+    home = fork.config.islands.of_cells(fork.lives.cell[older])
+    for number in range(fork.config.islands.count):
+        row = older[home == number][-1]
+        life = relive(fork, int(fork.lives.id[row]), int(fork.lives.world[row]))
+        assert life.begin == "fork"
+        assert life.agrees
+
+
+def test_islands_have_rates_of_their_own(lived: Lived) -> None:
+    deaths = lived.table("deaths")
+    islands = lived.config.islands
+    assert islands.sizes == (12, 6, 6)
+    early = deaths["tick"] <= 150
+    home = islands.of_cells(deaths["cell"])
+    struck = (deaths["cause"] == "hazard") & early
+    share = [struck[home == k].sum() / early[home == k].sum() for k in range(3)]
+    assert share[1] > 4 * max(share[0], share[2])
+    seen = np.unique(lived.table("metrics")["watch.hazard"])
+    np.testing.assert_allclose(seen, [0.02, 0.08], rtol=1e-6)
+
+
+def test_equal_islands_are_a_plain_world() -> None:
+    """To the last bit, on a ring: only the borders are drawn."""
+    plain = Lived(config(MILL), 200)
+    islands = [{"name": "a"}, {"name": "b", "share": 3}, {"name": "c"}]
+    drawn = Lived(config({**MILL, "habitat": {**MILL["habitat"], "islands": islands}}), 200)
+    for name in ("births", "deaths"):
+        mine, other = plain.table(name), drawn.table(name)
+        for column, values in mine.items():
+            np.testing.assert_array_equal(values, other[column], column)
+    one = config({**MILL, "habitat": {**MILL["habitat"], "islands": [{"name": "only"}]}})
+    assert Lived(one, 200).digests() == plain.digests()
+
+
+def test_games_are_played_on_the_island_of_each_player(run: Path) -> None:
+    """They are the games of a plain world that is like the island everywhere."""
+    opened = Archive(run)
+    islands = opened.config.islands
+    numbers = [(int(number), 0) for number in opened.lives.of_world(0).id[:30]]
+    players = players_of(opened, numbers)
+    assert set(players.island.tolist()) == {0, 1, 2}
+    together = lifespans(players, 60)
+    for number in range(islands.count):
+        here = players.island == number
+        alone = players.take(here)._replace(
+            habitat=at(opened.config.build_habitat(), islands.bounds[number]), island=None
+        )
+        np.testing.assert_array_equal(lifespans(alone, 60), together[here])
+    assert len(set(together.tolist())) > 3

@@ -1,0 +1,87 @@
+"""Children on islands of a well-mixed world, compared with a plain reference that acts one by one."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from primordia.law.placement import Placement
+from primordia.random.wide import Wide
+from primordia.settings.islands import Islands
+from tests.chance import binomial, even
+from tests.law.test_placement import ROUNDS, RULES, N, W, words
+
+ISLANDS = Islands(("west", "middle", "east"), (0, 3, 8, N))
+MIGRATION = np.repeat(np.float32([0.25, 0.0, 1.0]), ISLANDS.sizes)
+"""From the middle nobody leaves, and from the east everybody."""
+
+
+def placed(rule: str, wants: np.ndarray, occupied: np.ndarray, drawn: np.ndarray) -> np.ndarray:
+    """Return parents (W, N); the last round of words decides who leaves."""
+    placement = Placement(topology="well-mixed", rule=rule)
+
+    def place(words: jax.Array, wants: jax.Array, occupied: jax.Array) -> jax.Array:
+        migration = jnp.broadcast_to(MIGRATION, wants.shape)
+        return placement.parents(
+            lambda number: Wide(*words[jnp.minimum(number, ROUNDS - 1)]),
+            wants,
+            occupied,
+            ISLANDS,
+            migration,
+        )
+
+    return np.asarray(jax.jit(place)(drawn, wants, occupied))
+
+
+def reach(cell: int, word: int) -> list[int]:
+    """Return the cells in which a child may be born; it leaves if its word is below the chance."""
+    home = int(ISLANDS.of_cells(cell))
+    leaves = word < MIGRATION[cell] * 2**32
+    there = ISLANDS.of_cells(np.arange(N)) == home
+    return [each for each in range(N) if (there[each] != leaves) and each != cell]
+
+
+def one_by_one(rule: str, drawn: np.ndarray, wants: np.ndarray, occupied: np.ndarray) -> list[int]:
+    """Return parents (N,) in one world from words (rounds, 2, N), wants (N,) and occupied (N,)."""
+    parent, full, waiting = [-1] * N, occupied.copy(), list(np.flatnonzero(wants))
+    for choice, priority in drawn[:-1]:
+        before, in_order = full.copy(), sorted(waiting, key=lambda cell: (priority[cell], cell))
+        waiting = []
+        for cell in in_order:
+            options = reach(cell, int(drawn[-1, 0, cell]))
+            if rule == "empty-only":
+                options = [option for option in options if not before[option]]
+            if not options:
+                continue
+            target = options[int(choice[cell]) * len(options) >> 32]
+            taken = parent[target] >= 0 if rule == "replacing" else full[target]
+            if not taken:
+                parent[target], full[target] = int(cell), True
+            elif rule == "empty-only":
+                waiting.append(cell)
+        if rule != "empty-only":
+            break
+    return parent
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_placing_all_at_once_equals_placing_one_by_one(rule: str) -> None:
+    rng, drawn = np.random.default_rng(3), words(4).copy()
+    occupied = rng.random((W, N)) < rng.random((W, 1))
+    wants = occupied & (rng.random((W, N)) < 0.8)
+    parents = placed(rule, wants, occupied, drawn)
+    for world in range(150):
+        alone = one_by_one(rule, drawn[:, :, world], wants[world], occupied[world])
+        assert parents[world].tolist() == alone
+
+
+def test_a_child_leaves_with_its_chance_and_every_cell_is_equally_likely() -> None:
+    wants = np.zeros((W, N), bool)
+    wants[:, 1] = True
+    parents = placed("blind", wants, wants, words(5))
+    births = np.bincount(np.nonzero(parents >= 0)[1], minlength=N)
+    assert births.sum() == W
+    assert binomial(int(births[3:].sum()), W, 0.25)
+    assert births[1] == 0
+    assert even(births[[0, 2]])
+    assert even(births[3:])
