@@ -69,7 +69,8 @@ def test_the_best_founder_is_the_last_of_the_longest_lived(poles: primordia.Run)
         )
         rates = some.players.take(np.zeros(most, int)).rates
         made = founders(run, world, most)
-        everyone = some.players._replace(genomes=made, keys=keys, rates=rates)
+        island = np.zeros(most, int)
+        everyone = some.players._replace(genomes=made, keys=keys, rates=rates, island=island)
         lived = lifespans(everyone, LONG)
         assert number == max(np.flatnonzero(lived == lived.max()))
         assert lived.max() > np.median(lived)
@@ -261,7 +262,10 @@ def test_an_evaluation_has_the_given_options_or_the_usual_ones(
         chosen_from,
         ["an evaluation"],
     )
-    options = {"games": played, "ticks": 70, "senses": "ignored", "habitat": {"angle_limit": 3.0}}
+    options = {
+        "games": played, "ticks": 70, "senses": "ignored", "habitat": {"angle_limit": 3.0},
+        "there": None,
+    }  # fmt: skip
     assert asked == [("settings", "players", [(3, 1)], options)]
     group.evaluate()
     usual: dict[str, Any] = {
@@ -269,6 +273,7 @@ def test_an_evaluation_has_the_given_options_or_the_usual_ones(
         "ticks": 100_000,
         "senses": "live",
         "habitat": {},
+        "there": None,
     }
     assert asked[1][-1] == usual
 

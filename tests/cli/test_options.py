@@ -165,7 +165,9 @@ def test_the_options_of_assays_reach_their_functions(run: MagicMock) -> None:
     opened = run.opened.return_value
     with patch("primordia.assays.garden.garden", return_value=[]) as garden:
         does("assay", "garden", RUN, "--each", 3, "--after", 0.25, *SHORT)
-        garden.assert_called_once_with(opened, each=3, after=0.25, **own)
+        garden.assert_called_once_with(opened, each=3, after=0.25, island=None, **own)
+        does("assay", "garden", RUN, "--island", "i", *SHORT)
+        assert garden.call_args == call(opened, each=20, after=0.5, island="i", **own)
     with patch("primordia.assays.line.line") as line:
         line.return_value.to_dict.return_value = {}
         does("assay", "line", RUN, 5, 6, "--world", 2, "--most", 7, *SHORT)
@@ -174,7 +176,7 @@ def test_the_options_of_assays_reach_their_functions(run: MagicMock) -> None:
         plain = {"most": 200, "habitat": {}, "games": 5, "ticks": 20_000}
         assert line.call_args == call(opened, 5, 0, **plain)
         lives = opened.lives
-        lives.oldest = lambda world: 3 if world is None else world
+        lives.oldest = lambda world, after, among: 3 if world is None else world
         lives.id, lives.world = np.arange(10, 20), np.arange(10)
         for words, number in (((), 3), (("--world", 2), 2), (("--world", 0), 0)):
             does("assay", "line", RUN, *words, "--json")

@@ -282,7 +282,7 @@ def test_a_fork_and_a_run_that_ended_have_no_ticks_in_common(end: int, common: b
     whole = lived(2, 1)
     late = run("late", whole.recorded_since(50))
     late.config = SimpleNamespace(**{name: getattr(late.config, name) for name in ("task", "cells")},
-        begins=50, saturation_ticks=AGE, model_dump=lambda **_: {"fork": fork})  # fmt: skip
+        begins=50, saturation_ticks=AGE, model_dump=lambda **_: {"fork": fork, "habitat": {}})  # fmt: skip
     early = run("early", whole.recorded_until(end))
     other = run("other", whole)
     if common:

@@ -101,12 +101,7 @@ def evaluate(
     """
     from primordia.api import load
 
-    if freeze_senses and open_loop:
-        raise InputError("--freeze-senses and --open-loop exclude each other; give one of them")
-    if organism is not None and founders is not None:
-        raise InputError("--founders and --organism exclude each other: one organism plays alone")
-    if organism is not None and island is not None:
-        raise InputError("--island and --organism exclude each other: one organism plays alone")
+    _refuse_pairs(freeze_senses and open_loop, organism, founders, island)
     senses: Any = "frozen" if freeze_senses else "ignored" if open_loop else "live"
     opened = load(run, trust)
     options: Any = {"games": games, "ticks": ticks, "senses": senses, "habitat": habitat}
@@ -128,6 +123,17 @@ def evaluate(
             f"{run}{_places(island, on)}: games cut at {ticks:,} ticks{_changed(habitat)}"
             f"{SENSES[senses]}",
         )
+
+
+def _refuse_pairs(
+    both_senses: bool, organism: int | None, founders: int | None, island: str | None
+) -> None:
+    if both_senses:
+        raise InputError("--freeze-senses and --open-loop exclude each other; give one of them")
+    if organism is not None and founders is not None:
+        raise InputError("--founders and --organism exclude each other: one organism plays alone")
+    if organism is not None and island is not None:
+        raise InputError("--island and --organism exclude each other: one organism plays alone")
 
 
 def _places(island: str | None, on: str | None) -> str:

@@ -189,33 +189,49 @@ def compare(
     if island is not None:
         lives = [_natives(run, begin, end, island) for run in runs]
     names, settings, rate = _names(runs), differing(configs), runs[0].description.rate
-    arms = []
-    for number, (run, lived) in enumerate(zip(runs, lives, strict=True)):
-        worlds = lived.by_world()
-        survived, dying = survival(lived, len(worlds), age), pace(worlds, begin, end)
-        gathered = gathering(run, len(worlds), begin, end, rate or 1)
-        measured = {
-            "first": first_long(worlds, age),
-            **saturated[number],
-            "lifespan": _known_everywhere(survived.restricted_mean),
-            "longest": _known_everywhere([world.lifespan.max() for world in worlds]),
-            "pace": dying.late,
-            "food": gathered.late,
-        }
-        arms.append(
-            ComparedArm(
-                names[number],
-                settings[number],
-                run.world_seeds,
-                measured,
-                survived,
-                dying,
-                gathered,
-                extinctions(worlds, run.config.cells),
-            )
+    arms = tuple(
+        _arm(
+            (names[number], settings[number]),
+            run,
+            lives[number],
+            saturated[number],
+            (age, begin, end),
         )
+        for number, run in enumerate(runs)
+    )
     span = "second" if rate else "tick"
-    return Comparison(configs[0].task, tuple(arms), age, begin, births, ticks, span, island)
+    return Comparison(configs[0].task, arms, age, begin, births, ticks, span, island)
+
+
+def _arm(
+    named: tuple[str, dict[str, Any]],
+    run: Records,
+    lived: Lives,
+    saturated: dict[str, Measured],
+    limits: tuple[int, int, int],
+) -> ComparedArm:
+    """Return the measurements of a run.
+
+    Args:
+        named: name of the run, and the settings in which it differs.
+        run: the run.
+        lived: the lives that count.
+        saturated: births and ticks to saturation.
+        limits: the age up to which lives count, and the first and last tick of the common time.
+    """
+    (age, begin, end), worlds = limits, lived.by_world()
+    survived, dying = survival(lived, len(worlds), age), pace(worlds, begin, end)
+    gathered = gathering(run, len(worlds), begin, end, run.description.rate or 1)
+    measured = {
+        "first": first_long(worlds, age),
+        **saturated,
+        "lifespan": _known_everywhere(survived.restricted_mean),
+        "longest": _known_everywhere([world.lifespan.max() for world in worlds]),
+        "pace": dying.late,
+        "food": gathered.late,
+    }
+    lost = extinctions(worlds, run.config.cells)
+    return ComparedArm(*named, run.world_seeds, measured, survived, dying, gathered, lost)
 
 
 def _natives(run: Records, begin: int, end: int, island: str) -> Lives:

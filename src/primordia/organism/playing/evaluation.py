@@ -135,14 +135,16 @@ def evaluate(
     )
 
 
-def on_island(run: Records, players: Players, worlds: Sequence[int], on: str | None) -> Players:
-    """Return players of these worlds on an island; None: unchanged, each on the island of its birth.
+def on_island(
+    run: Records, players: Players, worlds: Sequence[int], on: str | None
+) -> Players | None:
+    """Return players of these worlds on an island; None if no island is named.
 
     Raises:
         InputError: there is no such island.
     """
     if on is None:
-        return players
+        return None
     return moved(run, players, np.array(worlds), number_of(run.config.islands, on, "--on"))
 
 
