@@ -39,10 +39,9 @@ def export(
         "seed": str(run.world_seeds[world]),
         "organisms": " ".join(map(str, chosen)),
     }
-    lives = run.lives
-    cells = lives.cell[[lives.row(each, world) for each in chosen]]
-    if (islands := names_of(run.config.islands, cells)) is not None:
-        about["islands"] = " ".join(islands)
+    if run.config.islands.count > 1:
+        rows = [run.lives.row(each, world) for each in chosen]
+        about["islands"] = " ".join(names_of(run.config.islands, run.lives.cell[rows]) or ())
     if out.suffix != ONNX:
         genomes.write(out, run.layout, rebuilt, about)
     elif len(chosen) == 1:
