@@ -57,7 +57,9 @@ def test_columns_of_a_phylogeny_are_those_of_the_page() -> None:
     assert {*written} - {*common} == {"food"}
     place = {"island": pa.array(["sea"]).dictionary_encode()}
     islands = replace(forest([(0, 5, True)]), of_births=place).with_migrations()
-    more = {name: kind for name, kind in types(table(islands).schema).items() if name not in written}
+    more = {
+        name: kind for name, kind in types(table(islands).schema).items() if name not in written
+    }
     assert more == {"island": "category", "migrations": "int64"}
     for name, kind in more.items():
         assert f"`{name}` ({kind})" in SECTIONS["phylogeny"]

@@ -176,7 +176,7 @@ def test_the_options_of_assays_reach_their_functions(run: MagicMock) -> None:
         plain = {"most": 200, "habitat": {}, "games": 5, "ticks": 20_000}
         assert line.call_args == call(opened, 5, 0, **plain)
         lives = opened.lives
-        lives.oldest = lambda world, after, among: 3 if world is None else world
+        lives.oldest = lambda world, after: 3 if world is None else world
         lives.id, lives.world = np.arange(10, 20), np.arange(10)
         for words, number in (((), 3), (("--world", 2), 2), (("--world", 0), 0)):
             does("assay", "line", RUN, *words, "--json")
@@ -219,7 +219,7 @@ def test_assays_are_of_the_organisms_that_are_named(
 
 @pytest.mark.parametrize("asked", [False, True])
 def test_code_of_assays_is_trusted_only_if_asked(asked: bool, run: MagicMock) -> None:
-    run.opened.return_value.lives.oldest = lambda world, after, among: 0
+    run.opened.return_value.lives.oldest = lambda world, after: 0
     run.opened.return_value.lives.id = run.opened.return_value.lives.world = np.arange(1)
     places = {"garden": (RUN,), "line": RUN, "ablate": RUN}
     with (

@@ -185,7 +185,7 @@ class Run:
         run = self.opened()
         if organism is not None:
             return ancestors(run, organism, world or 0, say)
-        champion = Organism(run, oldest(run, world))
+        champion = Organism(run, run.lives.oldest(world))
         return ancestors(run, champion.id, champion.world, say)
 
     def lineages(self, world: int | None = None, at: int | None = None) -> list[WorldLines]:

@@ -138,13 +138,16 @@ def oldest(
 ) -> int:
     """Return the row of the longest late life, or of that among the natives of an island; see
     `Lives.oldest`."""
-    among = None if island is None else born_on(run, island)
-    return run.lives.oldest(world, after, among)
+    if island is None:
+        return run.lives.oldest(world, after)
+    return run.lives.oldest(world, after, born_on(run, island))
 
 
 def champions(run: Records, island: str | None = None) -> np.ndarray:
     """Return the row of each world's champion, or of that of an island; see `Lives.champions`."""
-    return run.lives.champions(None if island is None else born_on(run, island))
+    if island is None:
+        return run.lives.champions()
+    return run.lives.champions(born_on(run, island))
 
 
 def late_born(run: Records, after: float = LATE, island: str | None = None) -> np.ndarray:
