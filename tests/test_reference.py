@@ -2,6 +2,7 @@
 
 import csv
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -54,6 +55,14 @@ def test_columns_of_a_phylogeny_are_those_of_the_page() -> None:
     common = documented("phylogeny")
     assert common == {name: written[name] for name in common}
     assert {*written} - {*common} == {"food"}
+    place = {"island": pa.array(["sea"]).dictionary_encode()}
+    islands = replace(forest([(0, 5, True)]), of_births=place).with_migrations()
+    more = {
+        name: kind for name, kind in types(table(islands).schema).items() if name not in written
+    }
+    assert more == {"island": "category", "migrations": "int64"}
+    for name, kind in more.items():
+        assert f"`{name}` ({kind})" in SECTIONS["phylogeny"]
 
 
 def test_columns_of_a_life_are_those_of_the_page(tmp_path: Path) -> None:

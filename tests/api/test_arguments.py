@@ -85,12 +85,13 @@ def test_all_columns_of_a_table_are_arrays(opened: MagicMock) -> None:
 CASES: list[tuple[str, tuple[Any, ...], dict[str, Any], str, Any]] = [
     ("evaluate", ([Found(0, 203), Found(0, 4)],), {"games": 3}, "evaluate",
      call(ANY, [(3, 2), (4, 0)], games=3)),
-    ("shadow", (3, 9), {}, "shadow", call(ANY, 3, 9)),
-    ("shadow", (), {}, "shadow", call(ANY, 500, None)),
-    ("heredity", (0.25,), {}, "heredity", call(ANY, 0.25)),
-    ("heredity", (), {}, "heredity", call(ANY, 0.5)),
-    ("threshold", (0.25,), {}, "threshold", call(ANY, 0.25)),
-    ("threshold", (), {}, "threshold", call(ANY, 0.5)),
+    ("shadow", (3, 9), {"island": "i"}, "shadow", call(ANY, 3, 9, "i")),
+    ("shadow", (), {}, "shadow", call(ANY, 500, None, None)),
+    ("heredity", (0.25,), {"island": "i"}, "heredity", call(ANY, 0.25, "i")),
+    ("heredity", (), {}, "heredity", call(ANY, 0.5, None)),
+    ("threshold", (0.25,), {"island": "i"}, "threshold", call(ANY, 0.25, "i")),
+    ("threshold", (), {}, "threshold", call(ANY, 0.5, None)),
+    ("islands", (), {}, "on_islands", call(ANY)),
     ("ancestors", (3, 2), {"say": print}, "ancestors", call(ANY, 3, 2, print)),
     ("ancestors", (3,), {"say": print}, "ancestors", call(ANY, 3, 0, print)),
     ("ancestors", (0, 2), {"say": print}, "ancestors", call(ANY, 0, 2, print)),
@@ -184,9 +185,9 @@ def test_standings_are_those_of_both_groups_with_all_options(opened: MagicMock) 
         patch.object(runs, "evolved", return_value=[one, two]) as evolved,
         patch.object(runs, "unevolved", return_value=[three, four]) as unevolved,
     ):
-        found = primordia.Run(RUN).standings(7, 2, games=3, ticks=9)
-    evolved.assert_called_once_with(opened, 2)
-    unevolved.assert_called_once_with(opened, 7, 2)
+        found = primordia.Run(RUN).standings(7, 2, "i", games=3, ticks=9)
+    evolved.assert_called_once_with(opened, 2, "i")
+    unevolved.assert_called_once_with(opened, 7, 2, "i")
     assert found == [each.evaluate.return_value for each in groups.values()]
     for each in groups.values():
         each.evaluate.assert_called_once_with(games=3, ticks=9)
@@ -272,7 +273,7 @@ def test_a_comparison_has_its_horizons_and_all_arms_in_their_order() -> None:
         patch.object(comparison, "compare") as compare,
     ):
         primordia.compare("h=runs/h*", Path("b"), births=3, ticks=9)
-    compare.assert_called_once_with([one, two], 3, 9)
+    compare.assert_called_once_with([one, two], 3, 9, None)
     assert opened.call_args_list == [call(["runs/h*"], "h"), call(["b"], None)]
 
 
@@ -282,8 +283,8 @@ def test_an_experiment_compares_its_arms_with_the_horizons_that_are_given() -> N
         patch.object(api.Experiment, "records", return_value=arms),
         patch("primordia.api.experiments.compare") as compare,
     ):
-        api.Experiment(RUN).compare(3, 9)
-    compare.assert_called_once_with(arms, 3, 9)
+        api.Experiment(RUN).compare(3, 9, "i")
+    compare.assert_called_once_with(arms, 3, 9, "i")
 
 
 def test_an_experiment_draws_the_world_and_figures_of_each_arm() -> None:

@@ -34,7 +34,7 @@ def test_a_comparison_has_all_runs_of_an_arm_and_all_arms_of_an_experiment() -> 
         patch.object(comparison, "compare") as compare,
     ):
         primordia.compare(primordia.Run(RUN, (MORE,)), "OUT", api.Experiment(RUN))
-    compare.assert_called_once_with([[RUN, MORE], *arms], None, None)
+    compare.assert_called_once_with([[RUN, MORE], *arms], None, None, None)
 
 
 @pytest.mark.parametrize("trust", [False, True])

@@ -69,7 +69,8 @@ def test_the_best_founder_is_the_last_of_the_longest_lived(poles: primordia.Run)
         )
         rates = some.players.take(np.zeros(most, int)).rates
         made = founders(run, world, most)
-        everyone = some.players._replace(genomes=made, keys=keys, rates=rates)
+        island = np.zeros(most, int)
+        everyone = some.players._replace(genomes=made, keys=keys, rates=rates, island=island)
         lived = lifespans(everyone, LONG)
         assert number == max(np.flatnonzero(lived == lived.max()))
         assert lived.max() > np.median(lived)
@@ -169,7 +170,9 @@ def invented(monkeypatch: pytest.MonkeyPatch) -> Any:
     lives.inherited[[0, 1, 32, 33]] = True
     monkeypatch.setattr(controls, "players_of", lambda run, numbers: numbers)
 
-    def founders_of(_: Any, worlds: np.ndarray, counts: np.ndarray) -> tuple:
+    def founders_of(
+        _: Any, worlds: np.ndarray, counts: np.ndarray, island: str | None = None
+    ) -> tuple:
         world = np.repeat(worlds, counts)
         number = np.concatenate([np.arange(count) for count in counts])
         return world, number, Seats(np.arange(len(world)))
@@ -259,7 +262,10 @@ def test_an_evaluation_has_the_given_options_or_the_usual_ones(
         chosen_from,
         ["an evaluation"],
     )
-    options = {"games": played, "ticks": 70, "senses": "ignored", "habitat": {"angle_limit": 3.0}}
+    options = {
+        "games": played, "ticks": 70, "senses": "ignored", "habitat": {"angle_limit": 3.0},
+        "there": None,
+    }  # fmt: skip
     assert asked == [("settings", "players", [(3, 1)], options)]
     group.evaluate()
     usual: dict[str, Any] = {
@@ -267,6 +273,7 @@ def test_an_evaluation_has_the_given_options_or_the_usual_ones(
         "ticks": 100_000,
         "senses": "live",
         "habitat": {},
+        "there": None,
     }
     assert asked[1][-1] == usual
 

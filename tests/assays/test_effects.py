@@ -299,6 +299,7 @@ def test_each_moment_holds_what_was_sensed_and_remembered_at_its_tick(
     monkeypatch.setattr(making, "stretches", played)
     law = SimpleNamespace(senses=5, memory=2)
     players: Any = SimpleNamespace(genomes=np.zeros((3, 1)), law=law)
+    players.by_island = lambda: [(np.arange(3), players)]
     senses, memory, known = map(np.asarray, moments_of(players, Moments(kept, every), 50))
     assert games == [(1, 50, True)]
     for organism, end in enumerate(lived.tolist()):

@@ -23,6 +23,7 @@ from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
 from primordia.runs import loop
 from primordia.runs.lives import Lives
+from primordia.settings.islands import Islands
 from tests.commands import complains, here
 from tests.synthetic import worlds_of
 from tests.worlds import MEADOW, config
@@ -235,10 +236,13 @@ def test_an_organism_is_born_again_with_keys_of_its_world_and_birth_number(
         lives=lives,
         world_seeds=seeds,
         law="law",
-        config=SimpleNamespace(saturation_ticks=77, build_habitat=lambda: "habitat"),
+        config=SimpleNamespace(
+            saturation_ticks=77, build_habitat=lambda: "habitat", islands=Islands(("",), (0, 99))
+        ),
     )
     found: Any = _lifespans(run, rows, redrawn, 9)
-    (law, habitat, made, keys, rates), cut = found
+    (law, habitat, made, keys, rates, island), cut = found
+    assert island.tolist() == [0] * 4
     assert (law, habitat, made, cut, asked) == ("law", "habitat", "genomes", 9, [(rows, redrawn)])
     expected = stream(wide(seeds[[0, 0, 1, 1]]), Purpose.REBIRTH, wide(np.array([5, 9, 3, 7])))
     for half in ("hi", "lo"):

@@ -12,9 +12,9 @@ from primordia.cli import shadow
 from tests.commands import here
 
 OPTIONS: dict[tuple[str, ...], tuple[Any, ...]] = {
-    ("assay", "heredity", "--after", "0.25"): (0.25,),
-    ("assay", "threshold", "--after", "0.25"): (0.25,),
-    ("shadow", "--organisms", "7", "--ticks", "9"): (7, 9),
+    ("assay", "heredity", "--after", "0.25"): (0.25, None),
+    ("assay", "threshold", "--after", "0.25"): (0.25, None),
+    ("shadow", "--organisms", "7", "--ticks", "9"): (7, 9, None),
 }
 """Commands with options, and the arguments with which they measure an arm."""
 

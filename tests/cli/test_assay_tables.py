@@ -156,6 +156,19 @@ def test_a_line_is_a_column_with_its_first_last_and_largest_step() -> None:
     }
 
 
+def test_a_line_tells_its_migrations_if_there_are_islands() -> None:
+    steps = [Step(0, 10, 0, "founder", 3, 90, "sea"), Step(9, 11, 5, "mutant", 3, 80, "lagoon")]
+    found = Line(11, 3, 9, 2, steps, migrations=1234)
+    table = cells(tables.line("run", [found]))
+    assert (table["island of birth"], table["migrations"]) == (["lagoon"], ["1,234"])
+    assert [step["island"] for step in found.to_dict()["steps"]] == ["sea", "lagoon"]
+    plain = Line(2, 0, 1, 2, [Step(0, 1, 0, "founder", 3, 90)]).to_dict()
+    assert "migrations" not in plain
+    assert plain["steps"] == [
+        {"generation": 0, "organism": 1, "born": 0, "birth_cause": "founder", "recorded": 3, "reborn": 90}
+    ]  # fmt: skip
+
+
 def test_two_genomes_share_the_living() -> None:
     """The second wins two of four worlds, the first one, and one is a draw."""
     late = np.array([0.75, 0.25, 0.0, 0.5])

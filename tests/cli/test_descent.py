@@ -44,7 +44,7 @@ def ancestors(steps: list[dict[str, Any]], **other: Any) -> Any:
     values: dict[str, Any] = {
         "organism": 1234, "world": 2, "line": steps, "size": np.array([0.5, 0.25, 123.456, 0, np.nan]),
         "changes": np.zeros(0), "unknown": None, "common": None, "roots": 3, "step": steps.__getitem__,
-        "telling": lambda most: places[:most],
+        "telling": lambda most: places[:most], "islands": None,
     }  # fmt: skip
     return SimpleNamespace(**{**values, **other})
 
@@ -129,7 +129,7 @@ def world(count: int, **other: Any) -> Any:
         "effective": np.array([[9.0, 8, 7], [6, 5, 4], [3, 2, 1.5]]), "sweeps": [],
         "diversity": np.array([11111, 44444, 33333]), "to_dict": lambda: exported,
         "pairs": Times(np.array([1000, 3000]), np.array([0.25, 0.5])),
-        "neutral_pairs": Times(np.array([5000]), np.array([0.8])),
+        "neutral_pairs": Times(np.array([5000]), np.array([0.8])), "islands": None,
     }  # fmt: skip
     return SimpleNamespace(**{**values, **other})
 
@@ -147,6 +147,20 @@ def test_a_row_of_a_line_has_its_shares_slopes_and_p_values(shown: Shown) -> Non
         ["1,001", "0.110", "0.210", "-", "-", "-", "0.75"],
         ["1,002", "0.120", "0.220", "0", "0", "0", "0.75"],
     ]
+
+
+def test_islands_are_columns_after_births(shown: Shown) -> None:
+    home = {"island": "lagoon", "migrations": 1234}
+    descent._show_ancestors(RUN, ancestors([step(0, "founder", **home)], islands=["lagoon"]))
+    assert shown["head"][2:6] == ["born", "island", "migrations", "lived"]
+    assert shown["rows"][0][2:6] == ["3,000", "lagoon", "1,234", "4,000"]
+    assert any(note.startswith("migrations: births up to this organism") for note in shown["notes"])
+    found = world(1, islands=["lagoon"])
+    found.to_dict()["lines"][0] |= home
+    descent._show_lines(RUN, found)
+    assert shown["head"][:4] == ["line of", "island", "migrations", "largest"]
+    assert shown["rows"][0][:4] == ["1,000", "lagoon", "1,234", "0.100"]
+    assert any("migrations: births in the line" in note for note in shown["notes"])
 
 
 def test_notes_are_about_the_last_tick(shown: Shown) -> None:

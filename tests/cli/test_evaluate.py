@@ -109,6 +109,11 @@ def test_notes_are_only_those_that_apply(worlds: int, same: tuple[bool, bool]) -
     [
         ((), "RUN: games cut at 100,000 ticks"),
         (("--ticks", 1234, "--sticky", 0.5), "RUN: games cut at 1,234 ticks, sticky 0.5"),
+        (("--island", "i"), "RUN, born on i: games cut at 100,000 ticks"),
+        (
+            ("--island", "i", "--on", "j"),
+            "RUN, born on i, playing on j: games cut at 100,000 ticks",
+        ),
         (("--freeze-senses",), "RUN: games cut at 100,000 ticks, senses frozen"),
         (
             ("--noops", 30, "--open-loop"),

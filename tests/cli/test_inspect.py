@@ -101,10 +101,15 @@ LINES: dict[str, list[tuple[Any, ...]]] = {
     "verify run": [("load", Path("run"), False), ("verify",)],
     "verify run --device cpu --trust": [("load", Path("run"), True), ("verify",)],
     "compare a=one two": [
-        ("compare", ("a=one", "two"), {"births": None, "ticks": None}), ("save", Path()),
+        ("compare", ("a=one", "two"), {"births": None, "ticks": None, "island": None}), ("save", Path()),
     ],
     "compare one two three --births 1 --ticks 8 --out new": [
-        ("compare", ("one", "two", "three"), {"births": 1, "ticks": 8}), ("save", Path("new")),
+        ("compare", ("one", "two", "three"), {"births": 1, "ticks": 8, "island": None}),
+        ("save", Path("new")),
+    ],
+    "compare one two --island i": [
+        ("compare", ("one", "two"), {"births": None, "ticks": None, "island": "i"}),
+        ("save", Path()),
     ],
 }  # fmt: skip
 """Command lines, and what each asks of the Python interface."""

@@ -46,17 +46,20 @@ CALLS: dict[tuple[Any, ...], Any] = {
         call.film(ticks=(0, 0), world=0, by="births", organism=0, out=None),
     ("film", RUN): call.film(ticks=(None, None), world=0, by="births", organism=None, out=None),
     ("evaluate", RUN, "--world", 2, "--games", 3, "--founders", 7, "--ticks", 9, "--sticky", 0.5,
-     "--open-loop", "--json"):
-        call.standings(world=2, games=3, ticks=9, senses="ignored", habitat={"sticky": 0.5},
-                       founders=7),
+     "--open-loop", "--island", "i", "--on", "j", "--json"):
+        call.standings(world=2, island="i", games=3, ticks=9, senses="ignored",
+                       habitat={"sticky": 0.5}, founders=7, on="j"),
     ("evaluate", RUN, "--world", 0, "--json"):
-        call.standings(world=0, games=30, ticks=100_000, senses="live", habitat={}),
+        call.standings(world=0, island=None, games=30, ticks=100_000, senses="live", habitat={}),
     ("evaluate", RUN, "--json"):
-        call.standings(world=None, games=30, ticks=100_000, senses="live", habitat={}),
-    ("shadow", RUN, "--organisms", 3, "--ticks", 9, "--json"): call.shadow(3, 9),
-    ("shadow", RUN, "--json"): call.shadow(500, None),
-    ("assay", "heredity", RUN, "--after", 0.25, "--json"): call.heredity(0.25),
-    ("assay", "threshold", RUN, "--json"): call.threshold(0.5),
+        call.standings(world=None, island=None, games=30, ticks=100_000, senses="live", habitat={}),
+    ("shadow", RUN, "--organisms", 3, "--ticks", 9, "--island", "i", "--json"):
+        call.shadow(3, 9, "i"),
+    ("shadow", RUN, "--json"): call.shadow(500, None, None),
+    ("assay", "heredity", RUN, "--after", 0.25, "--json"): call.heredity(0.25, None),
+    ("assay", "heredity", RUN, "--island", "i", "--json"): call.heredity(0.5, "i"),
+    ("assay", "threshold", RUN, "--json"): call.threshold(0.5, None),
+    ("assay", "threshold", RUN, "--island", "i", "--json"): call.threshold(0.5, "i"),
     ("track", RUN, "--tensorboard", OUT, "--wandb", "W", "--follow", "--every", 5):
         call.track(OUT, Path("W"), seen=ANY, follow=True, every=5.0),
     ("track", RUN): call.track(None, None, seen=ANY, follow=False, every=30.0),
@@ -162,7 +165,9 @@ def test_the_options_of_assays_reach_their_functions(run: MagicMock) -> None:
     opened = run.opened.return_value
     with patch("primordia.assays.garden.garden", return_value=[]) as garden:
         does("assay", "garden", RUN, "--each", 3, "--after", 0.25, *SHORT)
-        garden.assert_called_once_with(opened, each=3, after=0.25, **own)
+        garden.assert_called_once_with(opened, each=3, after=0.25, island=None, **own)
+        does("assay", "garden", RUN, "--island", "i", *SHORT)
+        assert garden.call_args == call(opened, each=20, after=0.5, island="i", **own)
     with patch("primordia.assays.line.line") as line:
         line.return_value.to_dict.return_value = {}
         does("assay", "line", RUN, 5, 6, "--world", 2, "--most", 7, *SHORT)
@@ -171,7 +176,7 @@ def test_the_options_of_assays_reach_their_functions(run: MagicMock) -> None:
         plain = {"most": 200, "habitat": {}, "games": 5, "ticks": 20_000}
         assert line.call_args == call(opened, 5, 0, **plain)
         lives = opened.lives
-        lives.oldest = lambda world: 3 if world is None else world
+        lives.oldest = lambda world, after: 3 if world is None else world
         lives.id, lives.world = np.arange(10, 20), np.arange(10)
         for words, number in (((), 3), (("--world", 2), 2), (("--world", 0), 0)):
             does("assay", "line", RUN, *words, "--json")
@@ -214,7 +219,7 @@ def test_assays_are_of_the_organisms_that_are_named(
 
 @pytest.mark.parametrize("asked", [False, True])
 def test_code_of_assays_is_trusted_only_if_asked(asked: bool, run: MagicMock) -> None:
-    run.opened.return_value.lives.oldest = lambda world: 0
+    run.opened.return_value.lives.oldest = lambda world, after: 0
     run.opened.return_value.lives.id = run.opened.return_value.lives.world = np.arange(1)
     places = {"garden": (RUN,), "line": RUN, "ablate": RUN}
     with (

@@ -24,6 +24,9 @@ def test_the_text_has_the_lives_of_originals_and_of_shadows() -> None:
     many = np.arange(6, dtype=np.int32)
     text = shadow_text(Shadow("run", 6, many, np.full(6, 30), np.full(6, 10), cut=40))
     assert text.endswith("originals live 3.00 times as long, 95 % interval 3.00 to 3.00")
+    natives = Shadow("run", 6, many, np.full(6, 30), np.full(6, 10), 40, "lagoon")
+    assert shadow_text(natives).startswith("run: 6 organisms born on lagoon, each born again alone")
+    assert natives.to_dict()["island"] == "lagoon"
     alone = shadow_text(Shadow("run", 6, np.zeros(1, np.int32), np.ones(1), np.ones(1), cut=40))
     assert "from 6 births in 1 world;" in alone
     assert "longer than shadows in 6 worlds and shorter in 0 (sign test, p = 0.031)" in text

@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 
 from primordia.comparison import comparison as module
-from primordia.comparison.comparison import compare, differing
+from primordia.comparison.comparison import compare
+from primordia.comparison.differing import differing
 from primordia.comparison.measured import Measured
 from primordia.comparison.moments import saturation
 from primordia.comparison.pace import Gathering
+from primordia.comparison.tables import comparison_tables
 from primordia.errors import InputError
 from primordia.runs.arrays import NEVER
 from primordia.runs.lives import Lives, joined
@@ -280,8 +282,9 @@ def test_a_fork_and_a_run_that_ended_have_no_ticks_in_common(end: int, common: b
     fork = {"run": "runs/a", "tick": 50, "began": 0}
     whole = lived(2, 1)
     late = run("late", whole.recorded_since(50))
+    dumped = {"fork": fork, "habitat": {}}
     late.config = SimpleNamespace(**{name: getattr(late.config, name) for name in ("task", "cells")},
-        begins=50, saturation_ticks=AGE, model_dump=lambda **_: {"fork": fork})  # fmt: skip
+        begins=50, saturation_ticks=AGE, model_dump=lambda **_: dict(dumped))  # fmt: skip
     early = run("early", whole.recorded_until(end))
     other = run("other", whole)
     if common:
@@ -309,3 +312,50 @@ def test_a_setting_that_only_some_runs_have_differs() -> None:
         assert (bare["metabolism.gain"], fed["metabolism.gain"]) == (None, 0)
         assert bare.keys() == fed.keys()
         assert not {"about", "fork.run"} & bare.keys()
+
+
+def isles(hazard: float = 0.5) -> dict[str, Any]:
+    """Return settings of two islands; the second, `lagoon`, has the cells from 8 on."""
+    islands = [{"name": "sea"}, {"name": "lagoon", "share": 4, "hazard": hazard}]
+    return {"cells": 40, "habitat": {"islands": islands}}
+
+
+def test_natives_of_an_island_are_compared_alone() -> None:
+    """Organism k of a world is in cell k. Its life does not count beyond the common time."""
+    one, two = lived(3, 1), lived(3, 2)
+    runs = [run("a", one, {0: (4, 30)}, **isles()), run("b", two, seed=9, **isles(0.25))]
+    compared = compare(runs, island="lagoon")
+    natives = [lives.take(np.flatnonzero(lives.cell >= 8)) for lives in (one, two)]
+    for arm, lives in zip(compared.arms, natives, strict=True):
+        np.testing.assert_allclose(arm.measured["lifespan"].value, mean_until(lives, AGE))
+        longest = [world.lifespan.max() for world in lives.by_world()]
+        assert arm.measured["longest"].value.tolist() == longest
+        assert arm.pace.deaths.sum() == lives.died.sum()
+    assert list(compared.outcomes) == ["first", "lifespan", "longest", "pace"]
+    told = compared.to_dict()
+    assert told["island"] == "lagoon"
+    assert not {"births", "ticks", "food", "saturated", "extinctions"} & told["runs"][0].keys()
+    assert [each["settings"] for each in told["runs"]] == [
+        {"seed": 0, "lagoon.hazard": 0.5}, {"seed": 9, "lagoon.hazard": 0.25}
+    ]  # fmt: skip
+    text = comparison_tables(compared)
+    assert "Only organisms that were born on the island lagoon count" in text
+    assert "saturated" not in text.splitlines()[0]
+    assert "saturated" in comparison_tables(compare(runs)).splitlines()[0]
+    assert "island" not in compare(runs).to_dict()
+
+
+def test_an_island_without_natives_or_with_a_horizon_is_refused() -> None:
+    lives = lived(2, 1)
+    lives.cell[lives.world == 1] = 0
+    runs = [run("a", lives, **isles()), run("b", lived(2, 2), seed=9, **isles())]
+    with pytest.raises(
+        InputError, match="nothing has lived there in world 1 of runs/a up to tick 120"
+    ):
+        compare(runs, island="lagoon")
+    with pytest.raises(
+        InputError, match="--island: --births and --ticks are horizons of saturation"
+    ):
+        compare(runs, ticks=50, island="lagoon")
+    with pytest.raises(InputError, match="there is no island 'pond'; known: sea, lagoon"):
+        compare(runs, island="pond")

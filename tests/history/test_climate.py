@@ -8,6 +8,7 @@ import pyarrow as pa
 import pytest
 
 from primordia.history.climate import PastClimate
+from primordia.settings.islands import Islands
 
 SAMPLES = [(0, 20, 3.0), (1, 10, 5.0), (0, 10, 2.0), (1, 15, 6.0), (0, 30, 4.0)]
 """World, tick and gain of each row of the metrics, in no order; world 2 has none."""
@@ -23,7 +24,7 @@ def test_a_season_is_in_force_from_the_tick_after_the_one_at_whose_end_it_acts(
     world, tick, gain = zip(*SAMPLES, strict=True)
     stored = {"world.worlds.climate.metabolism.gain": np.float32(BEGINNING[True])}
     run: Any = SimpleNamespace(
-        config=SimpleNamespace(seasons=["any"], seeds=3),
+        config=SimpleNamespace(seasons=["any"], seeds=3, islands=Islands(("",), (0, 9))),
         description=SimpleNamespace(beginning={"metabolism.gain": 1.0}),
         origin=stored if forked else None,
         metrics=pa.table({"world": world, "tick": tick, "metabolism.gain": np.float32(gain)}),
@@ -38,6 +39,7 @@ def test_a_season_is_in_force_from_the_tick_after_the_one_at_whose_end_it_acts(
         expected.append(now)
     found = PastClimate(run).of_worlds(*np.array(asked).T)
     assert found["metabolism.gain"].tolist() == expected
-    lives: Any = SimpleNamespace(world=np.array(asked)[:, 0], born=np.zeros(len(asked), int))
+    none = np.zeros(len(asked), int)
+    lives: Any = SimpleNamespace(world=np.array(asked)[:, 0], born=none, cell=none)
     of_lives = PastClimate(run).of_lives(lives, np.array(asked)[:, 1])
     assert of_lives["metabolism.gain"].tolist() == expected

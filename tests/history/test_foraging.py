@@ -21,6 +21,7 @@ from primordia.law.metabolism import ONE
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from primordia.runs.records import Records
+from primordia.settings.islands import Islands
 from tests.commands import here
 from tests.history.larders import FED, FOOD
 from tests.worlds import RING, config
@@ -138,7 +139,7 @@ def test_worlds_of_unequal_length_share_their_intervals(begun: int) -> None:
     origin |= {f"world.worlds.climate.{k}": np.array(v, np.float32) for k, v in climate.items()}
     start = {"metabolism.drain": 1.5, "metabolism.gain": gains[0][0]}
     run: Any = SimpleNamespace(
-        config=SimpleNamespace(seeds=2, seasons=["any"]),
+        config=SimpleNamespace(seeds=2, seasons=["any"], islands=Islands(("",), (0, 9))),
         description=SimpleNamespace(beginning=start),
         metrics=pa.table(dict(zip(names, map(np.array, zip(*rows, strict=True)), strict=True))),
         origin=origin if begun else None,
@@ -159,7 +160,7 @@ def test_a_long_run_has_60_intervals(monkeypatch: pytest.MonkeyPatch) -> None:
     ticks = np.arange(0.0, 6_001, 10)
     monkeypatch.setattr(module, "harvests", lambda run, worlds: [Harvest(ticks, ticks, ticks)])
     run: Any = SimpleNamespace(
-        config=SimpleNamespace(seeds=1, seasons=[]),
+        config=SimpleNamespace(seeds=1, seasons=[], islands=Islands(("",), (0, 9))),
         description=SimpleNamespace(beginning={"metabolism.drain": 1.0, "metabolism.gain": 1.0}),
         origin=None,
     )

@@ -14,6 +14,7 @@ from primordia.history.threshold import Threshold
 from primordia.law.world import Cause
 from primordia.runs import loop
 from primordia.runs.arrays import NEVER
+from primordia.settings.islands import Islands
 from tests.worlds import HERD, config
 
 SETTINGS: dict[str, Any] = {
@@ -78,7 +79,9 @@ def stored() -> Any:
     every = {f"world.worlds.{name}": np.array(values, np.uint64) for name, values in counts.items()}
     every["world.organisms.born"] = np.array([890, 100, 600, 690, 0, 697], np.uint64)
     return SimpleNamespace(
-        config=SimpleNamespace(cells=3, metabolism=True, act=None, seasons=["any"]),
+        config=SimpleNamespace(
+            cells=3, metabolism=True, act=None, seasons=["any"], islands=Islands(("",), (0, 3))
+        ),
         description=SimpleNamespace(tallies=("score", "kills"), rate=50.0),
         world_seeds=np.array([7, 2**63], np.uint64),
         count=every.__getitem__,

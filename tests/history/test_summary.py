@@ -200,3 +200,22 @@ def test_the_break_even_is_given_in_units_that_all_worlds_have() -> None:
         for tick, second in ((0.5, None), (0.1, 9.0), (0.3, 6.0))
     ]
     assert summarised(each).splitlines()[1] == "  break-even: food of 0.1 to 0.5 a tick"
+
+
+def test_the_summary_has_a_line_for_each_island() -> None:
+    def island(name: str, age: float | None, **changed: Any) -> dict[str, Any]:
+        numbers = {"cells": 900, "living": 800, "births": 4000, "immigrants": 1}
+        return {"name": name, "mean_age": age, "median_lifespan": age, **numbers, **changed}
+
+    sea, empty = island("sea", 1234.4), island("pond", None, living=0, births=0, immigrants=0)
+    lines = summarised([world(islands=[sea, empty])]).splitlines()
+    assert lines[-3:-1] == [
+        "    sea: 800 / 900 alive, 4,000 births, 1 immigrant, mean age 1,234, median lifespan 1,234",
+        "    pond: 0 / 900 alive, 0 births, 0 immigrants",
+    ]
+    worlds = [world(islands=[island("sea", age), empty]) for age in (None, 10.0, 20.0, 90.0, 95.0)]
+    assert summarised(worlds).splitlines()[-2:] == [
+        "    sea: 4,000 / 4,500 alive, 20,000 births, 5 immigrants; medians over worlds: mean age 55,"
+        " median lifespan 55",
+        "    pond: 0 / 4,500 alive, 0 births, 0 immigrants",
+    ]

@@ -10,6 +10,7 @@ import pytest
 from primordia.brains import genomes
 from primordia.organism import export as exporting
 from primordia.organism.export import export
+from primordia.settings.islands import Islands
 from tests.commands import complains, here
 
 
@@ -61,7 +62,7 @@ def test_an_exported_file_names_the_task_the_worlds_seed_and_the_organisms(
     lives = SimpleNamespace(oldest={0: 2, 1: 3}.__getitem__, id=np.array([5, 6, 8, 7]))
     run: Any = SimpleNamespace(
         lives=lives,
-        config=SimpleNamespace(task="Pond"),
+        config=SimpleNamespace(task="Pond", islands=Islands(("",), (0, 9))),
         world_seeds=np.array([40, 41, 42]),
         layout="a layout",
         law="a law",

@@ -202,7 +202,7 @@ def test_settings_are_given_in_a_table_or_by_name(monkeypatch: pytest.MonkeyPatc
     table = {"senses": [49], "sticky": 0.25}
     evaluation.evaluate(run, [(9, 1)], games=3, senses="frozen", habitat=table, sticky=0.5, noops=0)
     evaluation.evaluate(run, [(9, 1)])
-    plain = {"games": 30, "ticks": 100_000, "senses": "live", "habitat": {}}
+    plain = {"games": 30, "ticks": 100_000, "senses": "live", "habitat": {}, "there": None}
     wanted = {"senses": [49], "sticky": 0.5, "noops": 0}
     players = ("a config", "players [(9, 1)]", [(9, 1)])
     assert asked == [

@@ -12,6 +12,7 @@ from primordia.law.world import BirthCause, Cause
 from primordia.organism import organism
 from primordia.organism.organism import Organism
 from primordia.runs.lives import ALIVE, Lives
+from primordia.settings.islands import Islands
 
 
 def test_an_organism_has_the_values_of_its_row() -> None:
@@ -28,7 +29,7 @@ def test_an_organism_has_the_values_of_its_row() -> None:
         ended=np.array([90, 72, 95]),
         cause=np.array([ALIVE, Cause.STARVED, ALIVE]),
     )
-    run: Any = SimpleNamespace(lives=lives)
+    run: Any = SimpleNamespace(lives=lives, config=SimpleNamespace(islands=Islands(("",), (0, 30))))
     names = "id", "world", "parent", "cell", "birth_cause", "born", "age", "cause"
     found = [tuple(getattr(Organism(run, row), name) for name in names) for row in range(3)]
     assert found == [
@@ -41,6 +42,9 @@ def test_an_organism_has_the_values_of_its_row() -> None:
         "<organism 11 of world 0: born 31, age 41, starved>",
         "<organism 12 of world 2: born 32, age 63, alive>",
     ]
+    assert Organism(run, 1).island is None
+    run.config.islands = Islands(("sea", "lagoon"), (0, 21, 30))
+    assert [Organism(run, row).island for row in range(3)] == ["sea", "lagoon", "lagoon"]
 
 
 @pytest.fixture

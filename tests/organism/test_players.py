@@ -9,6 +9,7 @@ import pytest
 from primordia.organism.playing import players
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
+from primordia.settings.islands import Islands
 
 
 def pairs(keys: Any) -> list[tuple[int, int]]:
@@ -33,17 +34,21 @@ def test_founders_of_a_garden_have_keys_and_genomes_of_their_worlds(
     class Past:
         def __init__(self, run: Any) -> None: ...
 
-        def of_worlds(self, worlds: np.ndarray, ticks: np.ndarray) -> dict[str, np.ndarray]:
+        def of_cells(self, worlds: np.ndarray, _: Any, ticks: np.ndarray) -> dict[str, np.ndarray]:
             return {"world": worlds, "tick": ticks}
 
     monkeypatch.setattr(players, "founders", genomes)
     monkeypatch.setattr(players, "PastClimate", Past)
     monkeypatch.setattr(players, "_players", lambda *given: given)
     seeds, ends = np.array([11, 22, 33], np.uint64), np.array([500, 600, 700])
-    run: Any = SimpleNamespace(world_seeds=seeds, ends=ends)
+    islands = Islands(("sea", "lagoon"), (0, 4, 12))
+    run: Any = SimpleNamespace(
+        world_seeds=seeds, ends=ends, config=SimpleNamespace(cells=12, islands=islands)
+    )
     world, number, found = players.founders_of(run, np.array([2, 0]), np.array([3, 2]))
     given: Any = found
-    _, rows, keys, climate = given
+    _, rows, keys, climate, cells = given
+    assert cells.tolist() == [0, 4, 8, 0, 6]
     assert world.tolist() == [2, 2, 2, 0, 0]
     assert number.tolist() == [0, 1, 2, 0, 1]
     assert np.ravel(rows).tolist() == [200, 201, 202, 0, 1]
@@ -51,6 +56,8 @@ def test_founders_of_a_garden_have_keys_and_genomes_of_their_worlds(
     assert climate["tick"].tolist() == [700, 700, 700, 500, 500]
     numbers = [(33, 0), (33, 1), (33, 2), (11, 0), (11, 1)]
     assert pairs(keys) == [key_of(seed, Purpose.CONTROL, number) for seed, number in numbers]
+    *_, given = players.founders_of(run, np.array([2, 0]), np.array([3, 2]), "lagoon")
+    assert given[-1].tolist() == [4, 6, 9, 4, 8]
 
 
 def test_organisms_play_with_keys_and_the_last_climate_of_their_worlds(
@@ -67,6 +74,7 @@ def test_organisms_play_with_keys_and_the_last_climate_of_their_worlds(
     class Table(np.ndarray):
         world = np.array([2, 0, 2])
         id = np.array([6, 7, 5])
+        cell = np.array([50, 60, 70])
 
     def taken(rows: np.ndarray) -> Any:
         return rows.view(Table)
@@ -79,7 +87,8 @@ def test_organisms_play_with_keys_and_the_last_climate_of_their_worlds(
     lives = SimpleNamespace(row=lambda *each: rows[each], take=taken)
     seeds, ends = np.array([11, 22, 33], np.uint64), np.array([500, 600, 700])
     run: Any = SimpleNamespace(lives=lives, world_seeds=seeds, ends=ends)
-    genomes, keys, climate = tuple[Any, ...](players.players_of(run, wanted))
+    genomes, keys, climate, cells = tuple[Any, ...](players.players_of(run, wanted))
+    assert cells.tolist() == [50, 60, 70]
     assert genomes == wanted
     numbers = [(33, 6), (11, 7), (33, 5)]
     assert pairs(keys) == [key_of(seed, Purpose.EVALUATION, number) for seed, number in numbers]

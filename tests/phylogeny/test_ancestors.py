@@ -1,5 +1,6 @@
 """Numbers of a line of descent, compared with walks through pedigrees, one organism at a time."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -12,6 +13,7 @@ from primordia.law.world import Cause
 from primordia.phylogeny import descent
 from primordia.phylogeny.descent import Ancestors, ancestors
 from primordia.runs.lives import ALIVE, Lives
+from primordia.settings.islands import Islands
 from tests.pedigrees import (
     common_after,
     line_to,
@@ -48,7 +50,7 @@ def followed(lives: Lives, organism: int, monkeypatch: pytest.MonkeyPatch) -> An
 
     run = SimpleNamespace(
         lives=lives,
-        config=SimpleNamespace(fork=None, begins=0),
+        config=SimpleNamespace(fork=None, begins=0, islands=Islands(("",), (0, len(lives)))),
         layout=SimpleNamespace(names=["hidden", "output"]),
     )
     monkeypatch.setattr(descent, "run_of", lambda *_: (run, 0))
@@ -213,3 +215,34 @@ def test_plain_values_of_a_line_have_the_cause_of_each_death(
     line = followed(lives, count - 1, monkeypatch).to_dict()["line"]
     named = [cause.name.lower().replace("_", "-") for cause in Cause]
     assert [step["cause"] for step in line] == [*named, None]
+
+
+def test_a_line_tells_its_islands_and_how_often_it_moved(monkeypatch: pytest.MonkeyPatch) -> None:
+    lives = walked([([0], []), ([1], []), ([2], []), ([3], [])])
+    lives.cell[:] = [0, 3, 3, 0, 2]
+    found = followed(lives, 4, monkeypatch)
+    assert (found.islands, found.migrations) == (None, None)
+    assert "island" not in found.step(0)
+    islands = Islands(("sea", "lagoon"), (0, 2, 4))
+    run: Any = SimpleNamespace(config=SimpleNamespace(begins=0, islands=islands))
+    found = replace(found, islands=descent._islands([run], found.line))
+    assert found.islands == ["sea", "lagoon", "lagoon", "sea", "lagoon"]
+    assert [found.step(place)["migrations"] for place in range(5)] == [0, 1, 1, 2, 3]
+    assert found.step(3)["island"] == "sea"
+
+
+def test_each_ancestor_has_the_island_of_the_run_in_which_it_was_born() -> None:
+    """An organism born in the tick of a fork was born in the run that was forked."""
+    line = lives_of([-1, 0, 1, 2], [0, 20, 30, 31], [50] * 4, [False] * 4)
+    line.cell[:] = 3
+    runs: list[Any] = [
+        SimpleNamespace(config=SimpleNamespace(begins=begins, islands=Islands(*islands)))
+        for begins, *islands in (
+            (30, ("sea", "lagoon"), (0, 2, 4)),
+            (0, ("sea", "pond"), (0, 3, 4)),
+        )
+    ]
+    assert descent._islands(runs, line) == ["pond", "pond", "pond", "lagoon"]
+    assert descent._islands(runs[:1], line) == ["lagoon"] * 4
+    plain: Any = SimpleNamespace(config=SimpleNamespace(begins=0, islands=Islands(("",), (0, 4))))
+    assert descent._islands([plain], line) is None

@@ -17,6 +17,8 @@ from primordia.phylogeny.frequencies import founders, founding_tick, instants
 from primordia.phylogeny.lines import WorldLines, lines, lines_of_world
 from primordia.phylogeny.living import Turnover, last_era
 from primordia.phylogeny.sweeps import Sweep, sweeps
+from primordia.runs.lives import Lives
+from primordia.settings.islands import Islands
 from tests.pedigrees import Event, moran, walked
 from tests.synthetic import world_of, worlds_of
 
@@ -197,10 +199,17 @@ def test_each_world_is_measured_with_its_own_lives_and_seed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     worlds = [(1, 5, True)] * 2, [(4, 0, False)] * 3, [(7, 3, True)]
-    run: Any = SimpleNamespace(lives=worlds_of(*worlds, until=90), world_seeds=np.array([5, 9, 2]))
-    monkeypatch.setattr(
-        module, "lines_of_world", lambda world, lives, at, seed: (world, [*lives.born], at, seed)
+    run: Any = SimpleNamespace(
+        lives=worlds_of(*worlds, until=90),
+        world_seeds=np.array([5, 9, 2]),
+        config=SimpleNamespace(islands="islands"),
     )
+
+    def measured(world: int, lives: Lives, at: int | None, seed: int, islands: str) -> tuple:
+        assert islands == "islands"
+        return world, [*lives.born], at, seed
+
+    monkeypatch.setattr(module, "lines_of_world", measured)
     expected: list[Any] = [(0, [1, 1], 30, 5), (1, [4, 4, 4], 30, 9), (2, [7], 30, 2)]
     assert lines(run, at=30) == expected
     for world in range(3):
@@ -298,3 +307,23 @@ def test_instants_are_dense_early_and_few() -> None:
     assert 200 < len(ticks) <= 301
     passed = (ticks - 100.0)[25:]
     assert max(passed[1:] / passed[:-1]) < 1.1
+
+
+def test_a_line_has_the_island_of_its_founder_and_counts_its_migrants() -> None:
+    """Lines of organisms 1 and 2 are founded at tick 1. Organism 2 is a migrant, but founds its line."""
+    lives = walked([([0], []), ([0, 1], []), ([2, 3], [])])
+    lives.cell[:6] = [0, 0, 1, 4, 5, 0]
+    found = module._places(
+        lives, np.array([0, 1]), np.array([0, 1, 0, 1, 0, 1]), Islands(("sea", "lagoon"), (0, 3, 6))
+    )
+    assert found["islands"] == ["sea", "sea"]
+    moved = [0, 0]
+    for row in range(2, 6):
+        up = int(lives.parent[row])
+        moved[[0, 1, 0, 1, 0, 1][row]] += (lives.cell[row] > 2) != (lives.cell[up] > 2)
+    assert found["migrations"].tolist() == moved
+    assert sum(moved) > 1
+    told = replace(invented(), islands=["a", "b", "c"], migrations=np.array([5, 6, 7])).to_dict()
+    assert [(line["island"], line["migrations"]) for line in told["lines"]] == [
+        ("b", 6), ("a", 5), ("c", 7)
+    ]  # fmt: skip

@@ -1,5 +1,6 @@
 """Phylogenies of invented worlds as tables and trees, against brute force and other readers."""
 
+from dataclasses import replace
 from functools import partial
 from io import StringIO
 from pathlib import Path
@@ -21,6 +22,7 @@ from primordia.phylogeny.phylogeny import Phylogeny, recorded, stacked
 from primordia.phylogeny.reduce import chosen
 from primordia.phylogeny.table import table
 from primordia.runs.records import Records
+from primordia.settings.islands import Islands
 from tests.phylogeny.forests import (
     FORESTS,
     ancestry,
@@ -278,6 +280,7 @@ def test_facts_on_record_are_those_of_each_organism() -> None:
     ]
     run: Any = SimpleNamespace(
         lives=lives,
+        config=SimpleNamespace(islands=Islands(("",), (0, 7))),
         schema=SimpleNamespace(mates=True, notes=("size", "rate"), tallies=("hits",)),
         mates_of=lambda _: np.array([-1, -1, 0, -1]),
         notes_of=lambda _: np.array([[1, 5], [2, 6], [0, 7], [4, 0]], np.int32),
@@ -290,6 +293,11 @@ def test_facts_on_record_are_those_of_each_organism() -> None:
     assert {name: each.to_pylist() for name, each in found.of_deaths.items()} == {
         "energy": [-1, None, 5, 4], "food": [2, None, 7, 0], "hits": [9, None, 0, 3]
     }  # fmt: skip
+    run.config.islands = Islands(("sea", "lagoon"), (0, 1, 7))
+    run.schema.notes = ("size", "island")
+    found = recorded(run)
+    assert found.of_births["island"].to_pylist() == ["sea", "lagoon", "lagoon", "sea"]
+    assert found.of_births["island_"].to_pylist() == [5, 6, 7, 0]
 
 
 def test_mates_are_read_from_the_births_of_each_organism() -> None:
@@ -333,3 +341,35 @@ def test_a_part_may_be_one_world_and_one_line_of_it() -> None:
     assert table(chosen(whole, extant=True))["id"].to_pylist() == [
         *(0, 1, world, world + 2, 2 * world, 2 * world + 1)
     ]
+
+
+@given(FORESTS)
+def test_migrations_are_counted_along_each_line(worlds: list) -> None:
+    """Cells 0 to 2 are one island, and cells 3 to 6 another. Some organisms of a fork have none."""
+    whole = forest(*worlds)
+    assert whole.with_migrations() is whole
+    homes = [None if cell == 6 else "sea" if cell < 3 else "lagoon" for cell in whole.lives.cell]
+    place = {"island": pa.array(homes).cast(pa.dictionary(pa.int16(), pa.string()))}
+    found = replace(whole, of_births=place).with_migrations()
+    expected: list[int] = []
+    for row, up in enumerate(whole.lives.parent_row.tolist()):
+        moved = up >= 0 and None not in (homes[row], homes[up]) and homes[row] != homes[up]
+        expected.append((expected[up] if up >= 0 else 0) + moved)
+    rows = table(found)
+    assert rows["migrations"].to_pylist() == expected
+    assert rows["island"].to_pylist() == homes
+    assert rows.column_names[9:12] == ["lifespan", "island", "migrations"]
+    assert rows.drop_columns(["island", "migrations"]).equals(table(whole))
+
+
+def test_exports_have_islands(tmp_path: Path) -> None:
+    whole = forest([(0, 0, True), (1, 1, False), (1, 1, True)])
+    place = {"island": pa.array(["sea", "lagoon", "lagoon"]).dictionary_encode()}
+    whole = replace(whole, of_births=place).with_migrations()
+    for name, separator in (("a.csv", ","), ("a.tsv", "\t")):
+        formats.save(whole, tmp_path / name, pytest.fail)
+        read = pd.read_csv(tmp_path / name, sep=separator)
+        assert read["island"].tolist() == ["sea", "lagoon", "lagoon"]
+        assert read["migrations"].tolist() == [0, 1, 1]
+    kept = table(chosen(whole, extant=True, collapse=True))
+    assert kept["migrations"].to_pylist() == [0, 1], "what was left out has moved"

@@ -126,7 +126,10 @@ def experiment(
 
 
 def compare(
-    *runs: Run | str | Path, births: int | None = None, ticks: int | None = None
+    *runs: Run | str | Path,
+    births: int | None = None,
+    ticks: int | None = None,
+    island: str | None = None,
 ) -> comparison.Comparison:
     """Compare runs or arms of one task with the first of them; see `comparison.compare`.
 
@@ -136,11 +139,12 @@ def compare(
             arms of the experiment.
         births: horizon in births; see `comparison.compare`.
         ticks: horizon in ticks, in the same way.
+        island: name of an island; only organisms that were born on it count.
 
     `figures.comparison.save` draws the result.
     """
     arms = [arm for each in runs for arm in _arms(each)]
-    return comparison.compare(arms, births, ticks)
+    return comparison.compare(arms, births, ticks, island)
 
 
 def _arms(place: Run | str | Path) -> list[Records]:

@@ -54,9 +54,11 @@ class Experiment(Run):
         """Return the question, the number of jobs in each state, and the worlds of each arm."""
         return self._recorded().info()
 
-    def compare(self, births: int | None = None, ticks: int | None = None) -> Comparison:
+    def compare(
+        self, births: int | None = None, ticks: int | None = None, island: str | None = None
+    ) -> Comparison:
         """Compare the arms; see `comparison.compare`."""
-        return compare(self.records(), births, ticks)
+        return compare(self.records(), births, ticks, island)
 
     def plot(
         self, out: str | Path | None = None, world: int = 0, figures: Sequence[str] = ()

@@ -18,6 +18,7 @@ from primordia.assays.subjects import of_run
 from primordia.errors import InputError, Trouble
 from primordia.history.heredity import Inherited, heredity
 from primordia.history.info import info
+from primordia.history.islands import OnIsland, champions, oldest, on_islands
 from primordia.history.summary import summary
 from primordia.history.threshold import Threshold, threshold
 from primordia.organism.export import export
@@ -101,43 +102,60 @@ class Run:
         run = self.opened()
         return Organism(run, run.lives.row(organism, world))
 
-    def oldest(self, world: int | None = None, after: float = LATE) -> Organism:
+    def oldest(
+        self, world: int | None = None, after: float = LATE, island: str | None = None
+    ) -> Organism:
         """Return the organism that lived longest, in one world or in all worlds.
 
         `after` is a share of each world's births; organisms born earlier than that do not count.
         In a fork, only births after the fork count. By default, the founders with which a world
         begins count only if few others were born. If several organisms lived longest, the last-born
-        of them is returned.
+        of them is returned. With the name of an `island`, only organisms that were born on it count.
         """
         run = self.opened()
-        return Organism(run, run.lives.oldest(world, after))
+        return Organism(run, oldest(run, world, after, island))
 
-    def champions(self) -> list[Organism]:
-        """Return the `oldest` organism of each world in which anything was born since the run began."""
+    def champions(self, island: str | None = None) -> list[Organism]:
+        """Return the `oldest` organism of each world in which anything was born since the run began.
+
+        With the name of an island, only organisms that were born on it count.
+        """
         run = self.opened()
-        return [Organism(run, row) for row in run.lives.champions().tolist()]
+        return [Organism(run, row) for row in champions(run, island).tolist()]
+
+    def islands(self) -> list[OnIsland]:
+        """Return the numbers of each island of each world; see `islands.on_islands`. A run without
+        islands gives []."""
+        return on_islands(self.opened())
 
     def evaluate(self, organisms: Iterable[Organism], **options: Any) -> list[Evaluation]:
         """Let organisms play games side by side; see `evaluation.evaluate`."""
         return evaluate(self.opened(), [(each.id, each.world) for each in organisms], **options)
 
     def standings(
-        self, founders: int | None = FOUNDERS, world: int | None = None, **options: Any
+        self,
+        founders: int | None = FOUNDERS,
+        world: int | None = None,
+        island: str | None = None,
+        **options: Any,
     ) -> list[Standing]:
         """Evaluate the champions, the living, some founders, and the best of many founders.
 
-        `founders` and `world` are those of `controls.unevolved`; `options` are those of
+        `founders`, `world` and `island` are those of `controls.unevolved`; `options` are those of
         `Group.evaluate`.
         """
         run = self.opened()
         with devices.selected(None, run.made_on):
             # The champions come first, so that a wrong option fails before many founders have lived.
-            found = [group.evaluate(**options) for group in evolved(run, world)]
-            return found + [group.evaluate(**options) for group in unevolved(run, founders, world)]
+            found = [group.evaluate(**options) for group in evolved(run, world, island)]
+            others = unevolved(run, founders, world, island)
+            return found + [group.evaluate(**options) for group in others]
 
-    def shadow(self, organisms: int = ORGANISMS, ticks: int | None = None) -> Shadow:
+    def shadow(
+        self, organisms: int = ORGANISMS, ticks: int | None = None, island: str | None = None
+    ) -> Shadow:
         """Let organisms and their unselected shadows live again; see `shadow.shadow`."""
-        return shadow(self.opened(), organisms, ticks)
+        return shadow(self.opened(), organisms, ticks, island)
 
     def ablate(self, organisms: Iterable[Organism] = (), **options: Any) -> list[Ablation]:
         """Let organisms, by default the champions, play games without their learning, their memory,
@@ -146,13 +164,13 @@ class Run:
         with devices.selected(None, run.made_on):
             return ablate(of_run(run, [(each.id, each.world) for each in organisms]), **options)
 
-    def heredity(self, after: float = LATE) -> list[Inherited]:
+    def heredity(self, after: float = LATE, island: str | None = None) -> list[Inherited]:
         """Measure how length of life is inherited in each world; see `history.heredity`."""
-        return heredity(self.opened(), after)
+        return heredity(self.opened(), after, island)
 
-    def threshold(self, after: float = LATE) -> list[Threshold]:
+    def threshold(self, after: float = LATE, island: str | None = None) -> list[Threshold]:
         """Measure in each world whether a good line can persist; see `history.threshold`."""
-        return threshold(self.opened(), after)
+        return threshold(self.opened(), after, island)
 
     def ancestors(
         self,
@@ -167,8 +185,8 @@ class Run:
         run = self.opened()
         if organism is not None:
             return ancestors(run, organism, world or 0, say)
-        oldest = Organism(run, run.lives.oldest(world))
-        return ancestors(run, oldest.id, oldest.world, say)
+        champion = Organism(run, run.lives.oldest(world))
+        return ancestors(run, champion.id, champion.world, say)
 
     def lineages(self, world: int | None = None, at: int | None = None) -> list[WorldLines]:
         """Measure how lines replace each other, in one world or in all; see `phylogeny.lines`."""

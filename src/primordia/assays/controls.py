@@ -13,7 +13,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from primordia.errors import InputError
-from primordia.organism.playing.evaluation import GAMES, TICKS, Evaluation, Senses, judged
+from primordia.history.islands import born_on, champions, oldest
+from primordia.organism.playing.evaluation import (
+    GAMES,
+    TICKS,
+    Evaluation,
+    Senses,
+    judged,
+    on_island,
+)
 from primordia.organism.playing.games import Players, lifespans
 from primordia.organism.playing.players import evaluation_keys, founders_of, players_of
 from primordia.runs.records import Records
@@ -92,6 +100,7 @@ class Group:
         ticks: int = TICKS,
         senses: Senses = "live",
         habitat: Mapping[str, Any] | None = None,
+        on: str | None = None,
     ) -> Standing:
         """Let each organism play; organisms that were not chosen play one game. See
         `evaluation.evaluate`."""
@@ -104,29 +113,36 @@ class Group:
             ticks=ticks,
             senses=senses,
             habitat=habitat or {},
+            there=on_island(self.run, self.players, [world for _, world in self.numbers], on),
         )
         return Standing(self.name, self.chosen_from, evaluations)
 
 
-def evolved(run: Records, world: int | None = None) -> list[Group]:
+def evolved(run: Records, world: int | None = None, island: str | None = None) -> list[Group]:
     """Return the champions of a run or an arm, and all living organisms if there are any.
 
     Args:
         run: the run, or the arm.
         world: a single world to take; by default all worlds in which anything was born since the
             run began.
+        island: name of an island; only organisms that were born on it are taken.
 
     Raises:
-        InputError: nothing was born there.
+        InputError: nothing was born there, or there is no such island.
     """
-    lives, champions = run.lives, _champions(run, world)
-    alive = np.flatnonzero(~lives.died & np.isin(lives.world, lives.world[champions]))
-    most = int(_births(run, lives.world[champions]).max())
-    found = [_recorded(run, "champion", most, champions)]
+    lives, rows, native = run.lives, _champions(run, world, island), born_on(run, island)
+    alive = np.flatnonzero(~lives.died & native & np.isin(lives.world, lives.world[rows]))
+    most = int(_births(run, lives.world[rows], native).max())
+    found = [_recorded(run, "champion", most, rows)]
     return found + ([_recorded(run, "all alive", 1, alive)] if len(alive) else [])
 
 
-def unevolved(run: Records, most: int | None = FOUNDERS, world: int | None = None) -> list[Group]:
+def unevolved(
+    run: Records,
+    most: int | None = FOUNDERS,
+    world: int | None = None,
+    island: str | None = None,
+) -> list[Group]:
     """Return for each world the longest-lived of a number of founders, and some unselected
     founders.
 
@@ -136,31 +152,35 @@ def unevolved(run: Records, most: int | None = FOUNDERS, world: int | None = Non
     Args:
         run: the run, or the arm.
         most: largest number of founders in each world among which the best is chosen; None: as many
-            as the world had births.
+            as the world had births, or as were born on the island.
         world: as for `evolved`.
+        island: name of an island on which all founders live; by default they are spread over all cells.
 
     Raises:
         InputError: nothing was born there, or `most` is below one.
     """
     if most is not None and most < 1:
         raise InputError("evaluate needs at least one founder to choose from")
-    worlds = run.lives.world[_champions(run, world)]
-    births = _births(run, worlds)
-    return _founders(run, worlds, births if most is None else np.minimum(births, most))
+    worlds = run.lives.world[_champions(run, world, island)]
+    births = _births(run, worlds, born_on(run, island))
+    return _founders(run, worlds, births if most is None else np.minimum(births, most), island)
 
 
-def _champions(run: Records, world: int | None) -> np.ndarray:
+def _champions(run: Records, world: int | None, island: str | None) -> np.ndarray:
     """Return the row of the champion of one world, or of each world."""
-    rows = run.lives.champions() if world is None else np.array([run.lives.oldest(world)])
+    if world is not None:
+        return np.array([oldest(run, world, island=island)])
+    rows = champions(run, island)
     if not len(rows):
-        raise InputError(f"{run.path}: nothing has been born since the fork")
+        when = "since the fork" if island is None else f"late on the island {island}"
+        raise InputError(f"{run.path}: nothing has been born {when}")
     return rows
 
 
-def _births(run: Records, worlds: np.ndarray) -> np.ndarray:
-    """Return the number of births in each of these worlds since the run began."""
+def _births(run: Records, worlds: np.ndarray, native: np.ndarray) -> np.ndarray:
+    """Return the number of births in each of these worlds since the run began, of `native` (L,) alone."""
     lives = run.lives
-    return np.bincount(lives.world[~lives.inherited], minlength=lives.worlds)[worlds]
+    return np.bincount(lives.world[~lives.inherited & native], minlength=lives.worlds)[worlds]
 
 
 def _recorded(run: Records, name: str, chosen_from: int, rows: np.ndarray) -> Group:
@@ -170,10 +190,12 @@ def _recorded(run: Records, name: str, chosen_from: int, rows: np.ndarray) -> Gr
     return Group(run, name, chosen_from, numbers, players_of(run, numbers))
 
 
-def _founders(run: Records, worlds: np.ndarray, counts: np.ndarray) -> list[Group]:
+def _founders(
+    run: Records, worlds: np.ndarray, counts: np.ndarray, island: str | None
+) -> list[Group]:
     """Return for each of these worlds the longest-lived of `counts` founders, and some unselected
     ones."""
-    world, number, everyone = founders_of(run, worlds, counts)
+    world, number, everyone = founders_of(run, worlds, counts, island)
     lived = lifespans(everyone, run.config.saturation_ticks)
     places = [np.flatnonzero(world == each) for each in worlds]
     longest = [here[len(here) - 1 - np.argmax(lived[here][::-1])] for here in places]

@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 
 from primordia.assays.subjects import GAMES, TICKS, Subjects, of_run, spaced
+from primordia.errors import InputError
+from primordia.history.islands import late_born
 from primordia.organism.playing.games import lifespans_in_games
 from primordia.organism.playing.players import founders_of
 from primordia.runs.lives import LATE
@@ -59,6 +61,7 @@ def garden(
     games: int = GAMES,
     ticks: int = TICKS,
     habitat: Mapping[str, Any] | None = None,
+    island: str | None = None,
 ) -> list[Bed]:
     """Let the oldest organisms, other late-born organisms and founders of each world play fresh games.
 
@@ -71,11 +74,16 @@ def garden(
         games: number of games of each organism; 1 if the habitat draws nothing at random.
         ticks: number of ticks after which a game is cut.
         habitat: changed settings of the habitat.
+        island: name of an island: all groups are born on it; by default on all islands.
 
     Raises:
-        InputError: nothing was born, or the habitat has no such setting.
+        InputError: nothing was born, or the habitat has no such setting, or there is no such island.
     """
-    lives, late = run.lives, np.flatnonzero(run.lives.late(after))
+    lives, late = run.lives, late_born(run, after, island)
+    if island is not None and not len(late):
+        raise InputError(
+            f"--island {island}: {run.path}: nothing has been born late on this island"
+        )
     found, worlds = [], np.unique(lives.world[late])
     groups = {"oldest": _oldest, "late-born": _spaced}
     for group, choose in groups.items():
@@ -84,7 +92,7 @@ def garden(
         numbers = list(zip(lives.id[chosen].tolist(), lives.world[chosen].tolist(), strict=True))
         subjects = of_run(run, numbers, habitat)
         found += _beds(group, subjects, lives.lifespan[chosen], games, ticks)
-    world, number, players = founders_of(run, worlds, np.full(len(worlds), each))
+    world, number, players = founders_of(run, worlds, np.full(len(worlds), each), island)
     players = players._replace(habitat=subjects.players.habitat)
     fresh = subjects._replace(players=players, organism=number, world=world)
     return found + _beds("founders", fresh, None, games, ticks)

@@ -2,12 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
+from operator import ne
 from typing import Any
 
 import numpy as np
 
 from primordia.assays.subjects import GAMES, TICKS, of_run
 from primordia.history import pedigree
+from primordia.history.islands import names_of
 from primordia.history.rebuilding import descent
 from primordia.law.world import BirthCause
 from primordia.organism.playing.games import lifespans_in_games
@@ -33,6 +35,17 @@ class Step:
     """ticks that the organism has lived in its world so far"""
     reborn: float
     """mean ticks that the genome lived in the games of the line's last organism"""
+    island: str | None = None
+    """name of the island on which the organism was born; None if its world has no islands"""
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain values for JSON."""
+        values = asdict(self)
+        return (
+            values
+            if self.island is not None
+            else {k: v for k, v in values.items() if k != "island"}
+        )
 
 
 @dataclass(frozen=True)
@@ -45,6 +58,9 @@ class Line:
     genomes: int
     """number of different genomes of the line; the steps are a sample of them"""
     steps: list[Step]
+    migrations: int | None = None
+    """number of births of the line on another island than the parent's; None if the world has no
+    islands"""
 
     @property
     def good(self) -> Step:
@@ -63,7 +79,12 @@ class Line:
     def to_dict(self) -> dict[str, Any]:
         """Return plain values for JSON."""
         largest = None if self.largest is None else [step.organism for step in self.largest]
-        return {**asdict(self), "good_from": self.good.organism, "largest_step": largest}
+        names = "organism", "world", "generations", "genomes"
+        values = {name: getattr(self, name) for name in names}
+        if self.migrations is not None:
+            values["migrations"] = self.migrations
+        values["steps"] = [step.to_dict() for step in self.steps]
+        return {**values, "good_from": self.good.organism, "largest_step": largest}
 
 
 def line(
@@ -102,6 +123,8 @@ def line(
     genomes = pedigree.genomes(run, rows[chosen])
     spans = lifespans_in_games(same._replace(genomes=genomes), subject.games(games), ticks)
     lives = run.lives.take(rows[chosen])
+    homes = names_of(run.config.islands, run.lives.cell[rows])
+    moved = None if homes is None else sum(map(ne, homes[1:], homes))
     steps = [
         Step(
             generation=int(chosen[k]),
@@ -110,10 +133,11 @@ def line(
             birth_cause=BirthCause(lives.birth_cause[k]).label,
             recorded=int(lives.lifespan[k]),
             reborn=float(span),
+            island=None if homes is None else homes[chosen[k]],
         )
         for k, span in enumerate(spans.mean(axis=1))
     ]
-    return Line(organism, world, len(rows) - 1, len(changed), steps)
+    return Line(organism, world, len(rows) - 1, len(changed), steps, moved)
 
 
 def _changed(run: Records, rows: np.ndarray) -> np.ndarray:

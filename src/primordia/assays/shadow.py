@@ -20,6 +20,7 @@ from primordia.comparison.resample import LEAST, interval, resamples
 from primordia.errors import InputError
 from primordia.history import pedigree
 from primordia.history.climate import PastClimate
+from primordia.history.islands import born_on
 from primordia.law.metabolism import Rates
 from primordia.organism.playing.games import Players, lifespans
 from primordia.random.keys import Purpose, stream
@@ -45,6 +46,8 @@ class Shadow:
     """ticks that the shadow of each organism lived, int64 (K,)"""
     cut: int
     """ticks after which lives were cut"""
+    island: str | None = None
+    """name of the island on which all the organisms were born"""
 
     @property
     def means(self) -> tuple[np.ndarray, np.ndarray]:
@@ -84,6 +87,7 @@ class Shadow:
         lines = {"original": self.original, "shadow": self.shadow}
         return {
             "name": self.name,
+            **({} if self.island is None else {"island": self.island}),
             "worlds": len(self.means[0]),
             "births": self.births,
             "organisms": len(self.world),
@@ -102,7 +106,12 @@ class Shadow:
 
 
 @on_its_device
-def shadow(run: Records, organisms: int = ORGANISMS, ticks: int | None = None) -> Shadow:
+def shadow(
+    run: Records,
+    organisms: int = ORGANISMS,
+    ticks: int | None = None,
+    island: str | None = None,
+) -> Shadow:
     """Let organisms of a run and their shadows live again, in pairs.
 
     Args:
@@ -110,21 +119,25 @@ def shadow(run: Records, organisms: int = ORGANISMS, ticks: int | None = None) -
         organisms: largest number of organisms of each world, evenly spaced over all its births but
             the last.
         ticks: age at which lives are cut; by default the task's `saturation_ticks`.
+        island: name of an island; only organisms that were born on it live again. Their ancestors may
+            have lived on other islands.
 
     Raises:
-        InputError: a number is below one, or no world has two births since the fork.
+        InputError: a number is below one, no world has two births since the fork (on the island), or
+            there is no such island.
     """
     cut = run.config.saturation_ticks if ticks is None else ticks
     if organisms < 1 or cut < 1:
         raise InputError("shadow needs at least one organism and one tick")
-    own = np.flatnonzero(~run.lives.inherited)
+    own = np.flatnonzero(~run.lives.inherited & born_on(run, island))
     rows = _sample(run.lives.world[own], own, organisms) if len(own) else own
     if not len(rows):
+        where = "a world" if island is None else f"a world on the island {island}"
         raise InputError(
-            f"{run.path}: shadow needs two births in a world; in a fork, two births since the fork"
+            f"{run.path}: shadow needs two births in {where}; in a fork, two births since the fork"
         )
     original, redrawn = (_lifespans(run, rows, each, cut) for each in (False, True))
-    return Shadow(run.path.name, len(own), run.lives.world[rows], original, redrawn, cut)
+    return Shadow(run.path.name, len(own), run.lives.world[rows], original, redrawn, cut, island)
 
 
 def _sample(worlds: np.ndarray, rows: np.ndarray, most: int) -> np.ndarray:

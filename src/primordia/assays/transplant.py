@@ -8,16 +8,12 @@ natives live longer at home than away can also mean that home is an easy place.
 from dataclasses import dataclass
 from typing import Any
 
-import jax
-import jax.numpy as jnp
 import numpy as np
 
 from primordia.assays.subjects import GAMES, TICKS, spaced
 from primordia.errors import InputError
-from primordia.history.climate import PastClimate
-from primordia.law.metabolism import Rates
 from primordia.organism.playing.games import Players, lifespans_in_games
-from primordia.organism.playing.players import founders_of, players_of
+from primordia.organism.playing.players import founders_of, moved, players_of
 from primordia.progress import steps
 from primordia.runs.lives import LATE
 from primordia.runs.records import Records
@@ -126,15 +122,10 @@ def everywhere(run: Records, players: Players, world: int, games: int, ticks: in
 
     Each island has the settings that it has at the end of the records.
     """
-    islands, count = run.config.islands, len(players.genomes)
-    number, past = 1 if players.deterministic else games, PastClimate(run)
-    worlds, lived = np.full(count, world), np.zeros((count, islands.count))
-    for k in steps(range(islands.count), "living on each island"):
-        cells = np.full(count, islands.bounds[k])
-        climate = past.of_cells(worlds, cells, run.ends[worlds])
-        here = players._replace(
-            rates=Rates.of(jax.tree.map(jnp.asarray, climate)), island=np.full(count, k)
-        )
+    number, worlds = 1 if players.deterministic else games, np.full(len(players.genomes), world)
+    lived = np.zeros((len(worlds), run.config.islands.count))
+    for k in steps(range(lived.shape[1]), "living on each island"):
+        here = moved(run, players, worlds, k)
         lived[:, k] = lifespans_in_games(here, number, ticks).mean(axis=1)
     return lived
 

@@ -109,9 +109,24 @@ def _show_ancestors(run: Path, found: "Ancestors") -> None:
     if found.unknown:
         which = "The changes" if found.changes is None else "The changes before a fork"
         notes.append(f"{which} are unknown: {found.unknown}.")
+    homes = () if found.islands is None else ("island", "migrations")
+    if homes:
+        notes.append("migrations: births up to this organism on another island than the parent's.")
     show_table(
         f"{run}: the line of organism {found.organism:,} of world {found.world}",
-        ("organism", "line", "born", "lived", "death", "children", "change", "10 %", "50 %", "all"),
+        (
+            "organism",
+            "line",
+            "born",
+            *homes,
+            "lived",
+            "death",
+            "children",
+            "change",
+            "10 %",
+            "50 %",
+            "all",
+        ),
         [_ancestor_row(found, place) for place in places],
         [*notes, _common_text(found)],
     )
@@ -122,7 +137,9 @@ def _ancestor_row(found: "Ancestors", place: int) -> tuple[str, ...]:
     size = None if found.size is None else found.size[place]
     return (
         f"{step['organism']:,}",
-        *(f"{step[name]:,}" for name in ("generation", "born", "lifespan")),
+        *(f"{step[name]:,}" for name in ("generation", "born")),
+        *((step["island"], f"{step['migrations']:,}") if "island" in step else ()),
+        f"{step['lifespan']:,}",
         step["cause"] or "alive",
         f"{step['children']:,}",
         _number(size, ".3g") if step["birth_cause"] == "mutant" else step["birth_cause"],
@@ -150,6 +167,7 @@ def _show_lines(run: Path, found: "WorldLines") -> None:
     rows = [
         (
             f"{line['organism']:,}",
+            *((line["island"], f"{line['migrations']:,}") if "island" in line else ()),
             f"{line['largest_share']:.3f}",
             f"{line['final_share']:.3f}",
             _number(line["slope"], ".2g"),
@@ -159,7 +177,17 @@ def _show_lines(run: Path, found: "WorldLines") -> None:
         )
         for line in told["lines"][:LINES]
     ]
-    head = ("line of", "largest", "last share", "s per tick", "s per life", "p of s", "p of last")
+    homes = () if found.islands is None else ("island", "migrations")
+    head = (
+        "line of",
+        *homes,
+        "largest",
+        "last share",
+        "s per tick",
+        "s per life",
+        "p of s",
+        "p of last",
+    )
     title = (
         f"{run}: world {found.world}, {len(found.founders):,} lines founded at tick "
         f"{told['founded']:,},"
@@ -172,6 +200,11 @@ def _notes(found: "WorldLines", told: dict[str, Any]) -> list[str]:
     notes = []
     if (left_out := len(found.founders) - LINES) > 0:
         notes.append(f"{left_out:,} smaller lines are left out; --json shows all.")
+    if found.islands is not None:
+        notes.append(
+            "island: where the first organism of the line was born. migrations: births in the line on"
+            " another island than the parent's."
+        )
     now, (low, high) = found.effective[2, -1], (e[-1] for e in told["bands"]["effective_lines"])
     notes += [
         "s: slope of ln(x / (1 - x)) over time while the share x is between 5 and 95 %. p: two-sided"

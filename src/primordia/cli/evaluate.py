@@ -6,7 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from primordia.cli.flags import HabitatCommand, recorded_device_option, run_argument, trust_option
+from primordia.cli.flags import (
+    HabitatCommand,
+    island_option,
+    recorded_device_option,
+    run_argument,
+    trust_option,
+)
 from primordia.cli.numbers import COUNT, TICKS
 from primordia.cli.table import show_table, spread
 from primordia.errors import InputError
@@ -31,6 +37,10 @@ SENSES = {
     "--world",
     type=int,
     help="World of --organism [0]; without --organism, measure this world alone [all].",
+)
+@island_option("Measure only organisms that were born on this island, and founders there")
+@click.option(
+    "--on", metavar="NAME", help="Let all play on this island [each on the island of its birth]."
 )
 @click.option("--games", type=COUNT, default=30, show_default=True, help="Number of games.")
 @click.option(
@@ -66,6 +76,8 @@ def evaluate(
     run: Path,
     organism: int | None,
     world: int | None,
+    island: str | None,
+    on: str | None,
     games: int,
     founders: int | None,
     ticks: int,
@@ -83,39 +95,60 @@ def evaluate(
     The lifespan is counted by the rules of the task; score and length are those of the whole game. Any
     setting of the habitat can be changed by a flag, such as --sticky 0.25; `primordia evaluate RUN
     --help` lists them.
+
+    With --island, the champion is that of the island: the longest-lived of the organisms that were
+    born on it, in the later half of the births of its world.
     """
     from primordia.api import load
 
-    if freeze_senses and open_loop:
-        raise InputError("--freeze-senses and --open-loop exclude each other; give one of them")
-    if organism is not None and founders is not None:
-        raise InputError("--founders and --organism exclude each other: one organism plays alone")
+    _refuse_pairs(freeze_senses and open_loop, organism, founders, island)
     senses: Any = "frozen" if freeze_senses else "ignored" if open_loop else "live"
     opened = load(run, trust)
     options: Any = {"games": games, "ticks": ticks, "senses": senses, "habitat": habitat}
+    options |= {} if on is None else {"on": on}
     if organism is not None:
         result = opened.organism(organism, world or 0).evaluate(**options)
-        click.echo(json.dumps(result.to_dict()) if as_json else evaluation_text(result, habitat))
+        if as_json:
+            click.echo(json.dumps(result.to_dict()))
+        else:
+            click.echo(evaluation_text(result, habitat, _places(None, on)))
         return
-    number = {} if founders is None else {"founders": founders}
-    found = opened.standings(world=world, **number, **options)
+    number: Any = {} if founders is None else {"founders": founders}
+    found = opened.standings(world=world, island=island, **number, **options)
     if as_json:
         click.echo(json.dumps({"rows": [each.to_dict() for each in found]}))
     else:
         show_standings(
             found,
-            f"{run}: games cut at {ticks:,} ticks{_changed(habitat)}{SENSES[senses]}",
+            f"{run}{_places(island, on)}: games cut at {ticks:,} ticks{_changed(habitat)}"
+            f"{SENSES[senses]}",
         )
 
 
-def evaluation_text(result: "Evaluation", changes: dict[str, Any]) -> str:
+def _refuse_pairs(
+    both_senses: bool, organism: int | None, founders: int | None, island: str | None
+) -> None:
+    if both_senses:
+        raise InputError("--freeze-senses and --open-loop exclude each other; give one of them")
+    if organism is not None and founders is not None:
+        raise InputError("--founders and --organism exclude each other: one organism plays alone")
+    if organism is not None and island is not None:
+        raise InputError("--island and --organism exclude each other: one organism plays alone")
+
+
+def _places(island: str | None, on: str | None) -> str:
+    born, played = ("" if each is None else each for each in (island, on))
+    return (born and f", born on {born}") + (played and f", playing on {played}")
+
+
+def evaluation_text(result: "Evaluation", changes: dict[str, Any], where: str = "") -> str:
     """Return the results in a few lines."""
     values = result.to_dict()
     distinct = f"{_games(result.distinct, 'distinct ')}"
     if result.deterministic:
         distinct += "; nothing is random, so all games are the same"
     lines = [
-        f"organism {result.organism} of world {result.world}: "
+        f"organism {result.organism} of world {result.world}{where}: "
         f"{_games(result.games)}{_changed(changes)}"
         f"{SENSES[result.senses]}",
         f"  {distinct}",

@@ -1,5 +1,6 @@
 """Flags: the options of a command, and all settings of a task by their dotted names."""
 
+from collections.abc import Callable
 from os.path import isfile  # False, and no error, for a name that is too long
 from pathlib import Path
 from typing import Any
@@ -65,6 +66,11 @@ LIMITS = {
     "births": "Stop each world after this number of births; `none` sets no limit.",
     "until": "`saturation` stops each world when it is saturated, `none` does not.",
 }
+
+
+def island_option(text: str) -> Callable:
+    """Return the option --island, which restricts an analysis to the natives of an island."""
+    return click.option("--island", metavar="NAME", help=f"{text} [all islands].")
 
 
 def limit_options(command: Any) -> Any:

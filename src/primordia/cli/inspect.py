@@ -9,6 +9,7 @@ import click
 from primordia import files
 from primordia.cli.experiment import show_status
 from primordia.cli.flags import (
+    island_option,
     recorded_device_option,
     run_argument,
     runs_argument,
@@ -185,6 +186,7 @@ def tasks() -> None:
 @click.option(
     "--ticks", type=click.IntRange(1), help="Horizon in ticks: a later saturation does not count."
 )
+@island_option("Count only organisms that were born on this island")
 @click.option(
     "--out",
     type=OutputPath(file_okay=False),
@@ -192,18 +194,21 @@ def tasks() -> None:
     help="Folder for compare.png and compare.svg [the current folder].",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-def compare(runs: tuple[str, ...], out: Path, as_json: bool, **horizons: int | None) -> None:
+def compare(runs: tuple[str, ...], out: Path, as_json: bool, **options: Any) -> None:
     """Compare runs of one task: how soon worlds saturate, how long organisms live.
 
     All other runs are compared with the first run. The sample size is the number of worlds. So each
     run needs many worlds (--seeds), or several runs must be joined in an arm: 'heredity=runs/h*'
     'none=runs/n*'.
+
+    With --island, saturation, extinctions and food are left out, since they are counted for whole
+    worlds.
     """
     from primordia import api
     from primordia.comparison.tables import comparison_tables
     from primordia.figures.comparison import save
 
-    compared = api.compare(*runs, **horizons)
+    compared = api.compare(*runs, **options)
     click.echo(json.dumps(compared.to_dict()) if as_json else comparison_tables(compared))
     files.make_folder(out)
     pictures = save(compared, out)

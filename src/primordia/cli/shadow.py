@@ -6,7 +6,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from primordia.cli.flags import recorded_device_option, runs_argument, trust_option
+from primordia.cli.flags import (
+    island_option,
+    recorded_device_option,
+    runs_argument,
+    trust_option,
+)
 from primordia.cli.numbers import COUNT, TICKS
 
 if TYPE_CHECKING:
@@ -23,11 +28,17 @@ if TYPE_CHECKING:
     help="Largest number of organisms from each world.",
 )
 @click.option("--ticks", type=TICKS, help="Cut lives at this age [the task's saturation_ticks].")
+@island_option("Only organisms that were born on this island live again")
 @recorded_device_option
 @trust_option
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 def shadow(
-    runs: tuple[Path, ...], organisms: int, ticks: int | None, trust: bool, as_json: bool
+    runs: tuple[Path, ...],
+    organisms: int,
+    ticks: int | None,
+    island: str | None,
+    trust: bool,
+    as_json: bool,
 ) -> None:
     """Let organisms live again, and compare each with a shadow, whose line was never selected.
 
@@ -39,7 +50,7 @@ def shadow(
 
     loaded = load(runs, trust)
     arms = list(loaded.arms.values()) if isinstance(loaded, Experiment) else [loaded]
-    found = [arm.shadow(organisms, ticks) for arm in arms]
+    found = [arm.shadow(organisms, ticks, island) for arm in arms]
     if as_json:
         click.echo(json.dumps({"arms": [each.to_dict() for each in found]}))
     else:
@@ -50,8 +61,9 @@ def shadow_text(found: "Shadow") -> str:
     """Return the result as text."""
     told = found.to_dict()
     longer, shorter = found.longer
+    born = "" if found.island is None else f" born on {found.island}"
     head = (
-        f"{found.name}: {told['organisms']:,} organisms, each born again alone, from"
+        f"{found.name}: {told['organisms']:,} organisms{born}, each born again alone, from"
         f" {found.births:,} births in {told['worlds']} world{'s' if told['worlds'] > 1 else ''};"
         f" {2 * told['organisms']:,} lives, {told['ticks']:,} ticks"
     )

@@ -5,7 +5,8 @@ worlds of one seed are a pair; see `pairs`. The first run is the reference of al
 intervals of one outcome hold simultaneously; see `resample`. A world that stopped before it
 saturated is treated as censored; see `measured`. If runs are forks, the births, ticks and lives of
 all runs count from the tick of the latest fork. If few worlds saturate, lives count up to the last tick
-that is on record in all worlds.
+that is on record in all worlds. With an island, the lives are those of the organisms born on it; what is
+counted for whole worlds alone (saturation, food, extinctions) is then left out.
 """
 
 from collections.abc import Sequence
@@ -16,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from primordia.comparison.contrast import Contrast, contrast, plain
+from primordia.comparison.differing import differing
 from primordia.comparison.measured import Measured
 from primordia.comparison.moments import first_long, often_saturated, saturation
 from primordia.comparison.pace import Gathering, Pace, gathering, pace
@@ -24,8 +26,9 @@ from primordia.comparison.survival import Survival, survival
 from primordia.config import Config
 from primordia.errors import InputError
 from primordia.history.extinctions import Extinctions, extinctions
+from primordia.history.islands import born_on
+from primordia.runs.lives import Lives
 from primordia.runs.records import Records
-from primordia.settings.tables import flat
 
 OUTCOMES = {
     "first": "births to first long life",
@@ -38,6 +41,8 @@ OUTCOMES = {
 }
 UNSATURATED = ("longest", "pace")
 """Outcomes that are compared only if saturation is rare."""
+OF_WORLDS = ("births", "ticks", "food")
+"""Outcomes that are known for whole worlds, not for an island."""
 
 
 @dataclass(frozen=True)
@@ -92,6 +97,8 @@ class Comparison:
     """horizon in ticks; None: no horizon"""
     span: str
     """unit of time for food: `second`, or `tick` if the habitat has no rate"""
+    island: str | None = None
+    """name of the island to whose natives the comparison is restricted"""
 
     @property
     def contrasts(self) -> int:
@@ -101,7 +108,10 @@ class Comparison:
     @property
     def outcomes(self) -> dict[str, str]:
         """Name -> title of each outcome that applies and is known in some world."""
-        useless = UNSATURATED if any(often_saturated(arm.measured) for arm in self.arms) else ()
+        saturating = any(often_saturated(arm.measured) for arm in self.arms)
+        useless: tuple[str, ...] = UNSATURATED if saturating else ()
+        if self.island is not None:
+            useless = OF_WORLDS
         return {
             name: title.format(span=self.span)
             for name, title in OUTCOMES.items()
@@ -118,6 +128,8 @@ class Comparison:
         """Return plain values for JSON; an unknown bound is None."""
         names = "task", "age", "begin", "births", "ticks"
         whole = {name: getattr(self, name) for name in names}
+        if self.island is not None:
+            whole["island"] = self.island
         return {**whole, "runs": [self._arm(arm) for arm in self.arms]}
 
     def _arm(self, arm: ComparedArm) -> dict[str, Any]:
@@ -125,11 +137,14 @@ class Comparison:
             "name": arm.name,
             "settings": arm.settings,
             "worlds": arm.worlds,
-            "saturated": arm.saturated,
-            "extinctions": int(arm.extinctions.total.sum()),
-            "crashes": int(arm.extinctions.crashes.sum()),
         }
+        if self.island is None:
+            values["saturated"] = arm.saturated
+            values["extinctions"] = int(arm.extinctions.total.sum())
+            values["crashes"] = int(arm.extinctions.crashes.sum())
         for outcome, measured in arm.measured.items():
+            if self.island is not None and outcome in OF_WORLDS:
+                continue
             quartiles = [plain(measured.quantile(q)) for q in (0.25, 0.5, 0.75)]
             values[outcome] = dict(zip(("q1", "median", "q3"), quartiles, strict=True))
             if arm is not self.arms[0]:
@@ -138,7 +153,10 @@ class Comparison:
 
 
 def compare(
-    runs: Sequence[Records], births: int | None = None, ticks: int | None = None
+    runs: Sequence[Records],
+    births: int | None = None,
+    ticks: int | None = None,
+    island: str | None = None,
 ) -> Comparison:
     """Compare runs, read from their records.
 
@@ -147,12 +165,19 @@ def compare(
         births: horizon: a world counts as saturated only if it saturates before this number of
             births, counted from the latest fork.
         ticks: the same horizon in ticks.
+        island: name of an island; only organisms that were born on it count.
 
     Raises:
         InputError: there are fewer than two runs, one run is given twice, the tasks differ, nothing
-            has lived in a run, or a world stopped before a horizon and before it saturated.
+            has lived in a run, or a world stopped before a horizon and before it saturated; or a run
+            has no such island, nothing was born on it in a world, or a horizon is given with it.
     """
     configs = _configs(runs)
+    if island is not None and (births, ticks) != (None, None):
+        raise InputError(
+            "--island: --births and --ticks are horizons of saturation, which is that of whole worlds;"
+            " leave them out"
+        )
     age = min(config.saturation_ticks for config in configs)
     begin, end = _common_ticks(runs, configs)
     lives = [run.lives.recorded_since(begin) for run in runs]
@@ -161,34 +186,68 @@ def compare(
     ]
     if not any(map(often_saturated, saturated)):
         lives = [each.recorded_until(end) for each in lives]
+    if island is not None:
+        lives = [_natives(run, begin, end, island) for run in runs]
     names, settings, rate = _names(runs), differing(configs), runs[0].description.rate
-    arms = []
-    for number, (run, lived) in enumerate(zip(runs, lives, strict=True)):
-        worlds = lived.by_world()
-        survived, dying = survival(lived, len(worlds), age), pace(worlds, begin, end)
-        gathered = gathering(run, len(worlds), begin, end, rate or 1)
-        measured = {
-            "first": first_long(worlds, age),
-            **saturated[number],
-            "lifespan": _known_everywhere(survived.restricted_mean),
-            "longest": _known_everywhere([world.lifespan.max() for world in worlds]),
-            "pace": dying.late,
-            "food": gathered.late,
-        }
-        arms.append(
-            ComparedArm(
-                names[number],
-                settings[number],
-                run.world_seeds,
-                measured,
-                survived,
-                dying,
-                gathered,
-                extinctions(worlds, run.config.cells),
-            )
+    arms = tuple(
+        _arm(
+            (names[number], settings[number]),
+            run,
+            lives[number],
+            saturated[number],
+            (age, begin, end),
         )
+        for number, run in enumerate(runs)
+    )
     span = "second" if rate else "tick"
-    return Comparison(configs[0].task, tuple(arms), age, begin, births, ticks, span)
+    return Comparison(configs[0].task, arms, age, begin, births, ticks, span, island)
+
+
+def _arm(
+    named: tuple[str, dict[str, Any]],
+    run: Records,
+    lived: Lives,
+    saturated: dict[str, Measured],
+    limits: tuple[int, int, int],
+) -> ComparedArm:
+    """Return the measurements of a run.
+
+    Args:
+        named: name of the run, and the settings in which it differs.
+        run: the run.
+        lived: the lives that count.
+        saturated: births and ticks to saturation.
+        limits: the age up to which lives count, and the first and last tick of the common time.
+    """
+    (age, begin, end), worlds = limits, lived.by_world()
+    survived, dying = survival(lived, len(worlds), age), pace(worlds, begin, end)
+    gathered = gathering(run, len(worlds), begin, end, run.description.rate or 1)
+    measured = {
+        "first": first_long(worlds, age),
+        **saturated,
+        "lifespan": _known_everywhere(survived.restricted_mean),
+        "longest": _known_everywhere([world.lifespan.max() for world in worlds]),
+        "pace": dying.late,
+        "food": gathered.late,
+    }
+    lost = extinctions(worlds, run.config.cells)
+    return ComparedArm(*named, run.world_seeds, measured, survived, dying, gathered, lost)
+
+
+def _natives(run: Records, begin: int, end: int, island: str) -> Lives:
+    """Return the lives of an island's natives that are on record between two ticks.
+
+    Raises:
+        InputError: there is no such island, or nothing lived on it in some world.
+    """
+    lives = run.lives.take(np.flatnonzero(born_on(run, island)))
+    lives = lives.recorded_since(begin).recorded_until(end)
+    if len(empty := np.setdiff1d(np.arange(run.config.seeds), lives.world)):
+        raise InputError(
+            f"--island {island}: nothing has lived there in world {empty[0]} of {run.path} up to tick"
+            f" {end:,}, so worlds cannot be compared; genesis `fill` gives founders to every island"
+        )
+    return lives
 
 
 def _common_ticks(runs: Sequence[Records], configs: Sequence[Config]) -> tuple[int, int]:
@@ -241,14 +300,3 @@ def _configs(runs: Sequence[Records]) -> list[Config]:
                 f" {run.config.task}; only runs of one task can be compared"
             )
     return [run.config for run in runs]
-
-
-def differing(configs: Sequence[Config]) -> list[dict[str, Any]]:
-    """Return, for each configuration, the settings in which the configurations differ."""
-    ignored: Any = {"about": True, "fork": {"run"}}  # texts, and the name of a folder
-    each = [flat(config.model_dump(mode="json", exclude=ignored)) for config in configs]
-    names = dict.fromkeys(name for settings in each for name in settings)
-    different = [
-        name for name in names if any(settings.get(name) != each[0].get(name) for settings in each)
-    ]
-    return [{name: settings.get(name) for name in different} for settings in each]

@@ -112,17 +112,21 @@ def number_text(value: float) -> str:
 
 
 def _runs(compared: Comparison) -> Table:
-    """Return a table of the settings in which runs differ, and of the worlds that saturated."""
+    """Return a table of the settings in which runs differ, and of the worlds that saturated.
+
+    What is counted for whole worlds alone is left out if the comparison is one of an island.
+    """
     units = {"births": compared.births, "ticks": compared.ticks}
     horizons = [f"{horizon:,} {unit}" for unit, horizon in units.items() if horizon is not None]
     settings = compared.arms[0].settings
     saturated = f"saturated within {' and '.join(horizons)}" if horizons else "saturated"
-    table = _table(compared.task, *settings, "worlds", saturated, "extinctions", "crashes")
+    of_worlds = (saturated, "extinctions", "crashes") if compared.island is None else ()
+    table = _table(compared.task, *settings, "worlds", *of_worlds)
     for arm in compared.arms:
         own = [setting_text(value) for value in arm.settings.values()]
         lost = arm.extinctions
-        counts = map(str, (arm.worlds, arm.saturated, lost.total.sum()))
-        table.add_row(arm.name, *own, *counts, lost.text)
+        counts = str(arm.saturated), str(lost.total.sum()), lost.text
+        table.add_row(arm.name, *own, str(arm.worlds), *counts[: len(of_worlds)])
     return table
 
 
@@ -187,8 +191,14 @@ def _notes(compared: Comparison) -> list[str]:
         "Medians and intervals are over worlds. A world that stopped unsaturated is treated as"
         " censored."
     ]
+    if compared.island is not None:
+        notes = [
+            f"Only organisms that were born on the island {compared.island} count, wherever their parents"
+            " lived. Saturation, extinctions and food are counted for whole worlds, so they are left"
+            " out. Medians and intervals are over worlds."
+        ]
     notes += _too_few(compared) + evidence_notes(compared)
-    if any(arm.extinctions.crashes.any() for arm in compared.arms):
+    if compared.island is None and any(arm.extinctions.crashes.any() for arm in compared.arms):
         notes.append(
             "Crashes: extinctions after founders' descendants had filled half of the cells."
         )

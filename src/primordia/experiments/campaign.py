@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from primordia.comparison.comparison import differing
+from primordia.comparison.differing import differing
 from primordia.errors import InputError
 from primordia.experiments import file as files_of_users
 from primordia.experiments import plan as plans

@@ -57,7 +57,8 @@ def draw(compared: Comparison) -> Figure:
 def _panels(compared: Comparison) -> list[Callable[[Axes, Comparison], None]]:
     """Return the functions that draw the panels."""
     saturation = [_saturated_by_births, _saturated_by_time]
-    middle = [_dying] if "pace" in compared.outcomes else saturation
+    of_island = compared.island is not None  # then worlds' saturation is not compared
+    middle = [_dying] if of_island or "pace" in compared.outcomes else saturation
     food = [_gathering] if "food" in compared.outcomes else []
     return [_alive, *middle, *food]
 
@@ -90,7 +91,8 @@ def _alive(axes: Axes, compared: Comparison) -> None:
             axes.fill_between(ages, low, high, step="post", color=line["color"], alpha=0.2, lw=0)
         axes.step(ages, curve, where="post", label=arm.name, **line)
     style.time_axis(axes, compared.age, "age (ticks)")
-    axes.set(title="Alive at each age", ylabel="fraction of organisms", ylim=(-0.03, 1.03))
+    born = "" if compared.island is None else f", born on {compared.island}"
+    axes.set(title=f"Alive at each age{born}", ylabel="fraction of organisms", ylim=(-0.03, 1.03))
 
 
 def _saturated_by_births(axes: Axes, compared: Comparison) -> None:
@@ -157,7 +159,7 @@ def _legend(figure: Figure, axes: Axes, compared: Comparison) -> None:
     """Draw the names of the runs, and the meaning of the marks if there are any."""
     handles = axes.get_legend_handles_labels()[0]
     known = [arm.measured["births"].known for arm in compared.arms]
-    marked = "pace" not in compared.outcomes and any(each.any() for each in known)
+    marked = _saturated_by_time in _panels(compared) and any(each.any() for each in known)
     if marked and not all(each.all() for each in known):
         handles.append(
             Line2D([], [], ls="", marker=STOPPED, color=style.SOFT, label="stopped unsaturated")

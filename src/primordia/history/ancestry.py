@@ -64,15 +64,24 @@ def children(parent_row: np.ndarray) -> np.ndarray:
 
 
 def generations(parent_row: np.ndarray) -> np.ndarray:
-    """Return the number of ancestors on record of each organism, int64 (L,).
+    """Return the number of ancestors on record of each organism, int64 (L,)."""
+    return along(parent_row, parent_row >= 0)
+
+
+def along(parent_row: np.ndarray, counted: np.ndarray) -> np.ndarray:
+    """Count the organisms on the line of descent of each organism, itself included, int64 (L,).
 
     Each step doubles the distance up to which ancestors are counted, so few steps are needed
     (pointer jumping: Wyllie 1979).
+
+    Args:
+        parent_row: row of each parent, or -1, int64 (L,).
+        counted: the organisms that count, bool (L,), all with a parent.
     """
     far = np.where(parent_row >= 0, parent_row, np.arange(len(parent_row)))
-    distance = (parent_row >= 0).astype(np.int64)
+    number = counted.astype(np.int64)
     while True:
         further = far[far]
         if np.array_equal(further, far):
-            return distance
-        distance, far = distance + distance[far], further
+            return number
+        number, far = number + number[far], further

@@ -1,12 +1,14 @@
-"""Children beside their parents, from the records of one world."""
+"""Children beside their parents, from the records of one world or of each world of a run."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from primordia.history.ancestry import children
+from primordia.history.islands import born_on
 from primordia.law.world import BirthCause
 from primordia.runs.lives import LATE, Lives
+from primordia.runs.records import Records
 
 LEAST = 10
 """Smallest number of pairs of parent and child for a slope or a share."""
@@ -57,6 +59,27 @@ class Families:
 def families(lives: Lives, after: float = LATE, acts: bool = False) -> Families:
     """Return the families of one world whose children were born late; see `Lives.late`."""
     return families_of(lives, np.flatnonzero(lives.late(after)), acts)
+
+
+def families_by_world(
+    run: Records, after: float = LATE, acts: bool = False, island: str | None = None
+) -> list[Families]:
+    """Return the families of each world whose children were born late.
+
+    With an island, these are the families of which both parent and child were born on it. So both
+    lived in the same habitat, and the children that an organism has elsewhere do not count.
+
+    Raises:
+        InputError: the worlds have no such island.
+    """
+    if island is None:
+        return [families(lives, after, acts) for lives in run.lives.by_world()]
+    native = np.flatnonzero(born_on(run, island))
+    lives, late = run.lives.take(native), run.lives.late(after)[native]
+    return [
+        families_of(lives.of_world(world), np.flatnonzero(late[lives.world == world]), acts)
+        for world in range(run.lives.worlds)
+    ]
 
 
 def families_of(lives: Lives, born: np.ndarray, acts: bool = False) -> Families:

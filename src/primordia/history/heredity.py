@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from primordia.history.families import LEAST, Families, families
+from primordia.history.families import LEAST, Families, families_by_world
 from primordia.runs.lives import LATE
 from primordia.runs.records import Records
 
@@ -51,15 +51,19 @@ class Inherited:
         return asdict(self)
 
 
-def heredity(run: Records, after: float = LATE) -> list[Inherited]:
+def heredity(run: Records, after: float = LATE, island: str | None = None) -> list[Inherited]:
     """Measure the inheritance of lifespan in each world of a run, among children born late.
 
     Args:
         run: the run, or an arm.
         after: share of a world's births after which a birth is late.
+        island: name of an island; only parents and children that were both born there count.
+
+    Raises:
+        InputError: the worlds have no such island.
     """
-    worlds = enumerate(run.lives.by_world())
-    return [_of_world(world, families(lives, after)) for world, lives in worlds]
+    worlds = enumerate(families_by_world(run, after, island=island))
+    return [_of_world(world, found) for world, found in worlds]
 
 
 def _of_world(world: int, found: Families) -> Inherited:

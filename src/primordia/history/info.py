@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from primordia.history.extinctions import extinctions_of
+from primordia.history.islands import on_islands
 from primordia.history.threshold import Threshold, threshold
 from primordia.law.metabolism import ONE, break_even
 from primordia.law.world import Cause
@@ -30,8 +31,8 @@ def info(run: Records) -> dict[str, Any]:
     climate. `tries_per_life` tells how often an organism tries to copy itself in a life of mean
     length, at the present rate of replication. If the number is below one, lineages die out. If
     replication is an act, it is the mean number of tries so far, and `act` counts the tries, those that
-    failed, the children, and the energy invested in them. The fields of a single world also appear at
-    the top level.
+    failed, the children, and the energy invested in them. If worlds have islands, `islands` holds the
+    numbers of each; see `islands.OnIsland`. The fields of a single world also appear at the top level.
     """
     config, progress = run.config, run.progress
     worlds = [
@@ -61,7 +62,11 @@ def info(run: Records) -> dict[str, Any]:
 
 def _worlds(run: Records) -> list[dict[str, Any]]:
     each = zip(extinctions_of(run).crashes.tolist(), _thresholds(run), strict=True)
-    return [_world(run, world, *of_records) for world, of_records in enumerate(each)]
+    worlds = [_world(run, world, *of_records) for world, of_records in enumerate(each)]
+    for island in on_islands(run):
+        told = island.to_dict()
+        worlds[told.pop("world")].setdefault("islands", []).append(told)
+    return worlds
 
 
 def _thresholds(run: Records) -> list[dict[str, Any]]:

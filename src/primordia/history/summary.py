@@ -11,6 +11,8 @@ from primordia.history.series import quantile
 
 MAX_LISTED = 4
 """Largest number of worlds that are described one by one."""
+AGES = ("mean age", "median lifespan")
+"""Numbers of an island that are medians over worlds; others are sums."""
 MAX_RANGES = 4
 """Largest number of ranges of seeds that are listed."""
 
@@ -50,7 +52,7 @@ def _one_world(world: dict[str, Any]) -> list[str]:
         lines.append(f"    tallies of the living: {_tallies(world['tallies'])}")
     if world["fixation"]:
         lines.append(f"    one common ancestor since {_when(world['fixation'])}")
-    lines += _act([world]) + _threshold([world])
+    lines += _act([world]) + _threshold([world]) + _islands([world])
     if world["saturation"]:
         return [*lines, f"    saturated at {_when(world['saturation'])}"]
     return [*lines, "    not saturated"]
@@ -128,7 +130,34 @@ def _all_worlds(worlds: list[dict[str, Any]]) -> list[str]:
         f"    {_share(worlds, 'saturation', 'saturated')}",
         *_act(worlds),
         *_threshold(worlds),
+        *_islands(worlds),
     ]
+
+
+def _islands(worlds: list[dict[str, Any]]) -> list[str]:
+    """Return a line for each island: sums over worlds, and medians over worlds; none without islands."""
+    lines = []
+    for each in zip(*(world.get("islands", []) for world in worlds), strict=True):
+        living, cells, births, immigrants = (
+            sum(island[name] for island in each)
+            for name in ("living", "cells", "births", "immigrants")
+        )
+        came = "1 immigrant" if immigrants == 1 else f"{immigrants:,} immigrants"
+        over = "; medians over worlds: " if len(each) > 1 else ", "
+        ages = [
+            _median(words, [island[words.replace(" ", "_")] for island in each]) for words in AGES
+        ]
+        lines.append(
+            f"    {each[0]['name']}: {living:,} / {cells:,} alive, {births:,} births, {came}"
+            + (over + ", ".join(filter(None, ages)) if any(ages) else "")
+        )
+    return lines
+
+
+def _median(words: str, values: list[float | None]) -> str:
+    """Return a number of one world, or the median over worlds; "" if no world has one."""
+    known = [value for value in values if value is not None]
+    return f"{words} {np.median(known):,.0f}" if known else ""
 
 
 def _threshold(worlds: list[dict[str, Any]]) -> list[str]:

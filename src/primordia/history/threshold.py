@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from primordia.history.families import LEAST, Families, families, families_of
+from primordia.history.families import LEAST, Families, families_by_world, families_of
 from primordia.runs.lives import LATE, Lives
 from primordia.runs.records import Records
 
@@ -47,7 +47,7 @@ class Threshold:
         return {**asdict(self), "held": self.held}
 
 
-def threshold(run: Records, after: float = LATE) -> list[Threshold]:
+def threshold(run: Records, after: float = LATE, island: str | None = None) -> list[Threshold]:
     """Measure the error threshold in each world of a run.
 
     A parent is good if it lives at least as long as nine tenths of the organisms that were born
@@ -58,9 +58,14 @@ def threshold(run: Records, after: float = LATE) -> list[Threshold]:
     Args:
         run: the run, or an arm.
         after: share of a world's births after which a birth is late.
+        island: name of an island; only organisms that were born there count, and of their children
+            those that were born there too.
+
+    Raises:
+        InputError: the worlds have no such island.
     """
-    worlds, acts = enumerate(run.lives.by_world()), run.config.act is not None
-    return [_measured(world, families(lives, after, acts)) for world, lives in worlds]
+    worlds = enumerate(families_by_world(run, after, run.config.act is not None, island))
+    return [_measured(world, found) for world, found in worlds]
 
 
 def over_births(world: int, lives: Lives, edges: np.ndarray, acts: bool = False) -> list[Threshold]:

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from primordia.brains import genomes
 from primordia.errors import InputError
+from primordia.history.islands import names_of
 from primordia.history.rebuilding import rebuild_all
 from primordia.organism.policy import Policy
 from primordia.runs.records import Records
@@ -18,7 +19,8 @@ def export(
     """Write organisms to a file. Return their birth numbers.
 
     The file is an ONNX model of one brain if its name ends with .onnx (see `onnx.write`). Other
-    files hold genomes in safetensors (see `genomes.write`).
+    files hold genomes in safetensors (see `genomes.write`). Both name the organisms, and the islands on
+    which they were born if their world has islands.
 
     Args:
         run: the organisms' run.
@@ -37,6 +39,9 @@ def export(
         "seed": str(run.world_seeds[world]),
         "organisms": " ".join(map(str, chosen)),
     }
+    if run.config.islands.count > 1:
+        rows = [run.lives.row(each, world) for each in chosen]
+        about["islands"] = " ".join(names_of(run.config.islands, run.lives.cell[rows]) or ())
     if out.suffix != ONNX:
         genomes.write(out, run.layout, rebuilt, about)
     elif len(chosen) == 1:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from primordia.history.islands import names_of
 from primordia.history.rebuilding import descent, rebuild
 from primordia.law.world import BirthCause, Cause
 from primordia.organism.playing.evaluation import Evaluation, evaluate
@@ -56,6 +57,12 @@ class Organism:
     def cell(self) -> int:
         """Number of the cell within the world."""
         return int(self.lives.cell[self.row])
+
+    @property
+    def island(self) -> str | None:
+        """Name of the island on which it was born and lives; None if its world has no islands."""
+        names = names_of(self.run.config.islands, self.lives.cell[[self.row]])
+        return None if names is None else names[0]
 
     @property
     def birth_cause(self) -> str:

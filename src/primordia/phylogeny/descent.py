@@ -10,6 +10,7 @@ import numpy as np
 
 from primordia.errors import InputError
 from primordia.history.ancestry import children, nearest
+from primordia.history.islands import names_of
 from primordia.history.rebuilding import changes, descent
 from primordia.law.world import BirthCause, Cause
 from primordia.phylogeny.coalescence import Genealogy
@@ -66,6 +67,17 @@ class Ancestors:
     """the common ancestor of the living; None if there is none on record"""
     roots: int
     """number of roots of the living: ancestors without a parent on record"""
+    islands: list[str] | None = None
+    """name of the island on which each organism was born, [D]; None if the worlds have no islands"""
+
+    @property
+    def migrations(self) -> np.ndarray | None:
+        """Number of births on another island than the parent's, from the root of the line to each
+        organism, int64 (D,); None if the worlds have no islands."""
+        if self.islands is None:
+            return None
+        home = np.array(self.islands)
+        return np.append(0, np.cumsum(home[1:] != home[:-1]))
 
     @cached_property
     def size(self) -> np.ndarray | None:
@@ -117,6 +129,9 @@ class Ancestors:
         """Return an organism of the line as plain values; what is unknown or has not happened is None."""
         line, parent = self.line, int(self.line.parent[place])
         size = None if self.changes is None else [_known(each) for each in self.changes[place]]
+        places = {}
+        if self.islands is not None and self.migrations is not None:
+            places = {"island": self.islands[place], "migrations": int(self.migrations[place])}
         return {
             "generation": place,
             "organism": int(line.id[place]),
@@ -126,6 +141,7 @@ class Ancestors:
             "cause": Cause(line.cause[place]).label if line.died[place] else None,
             "children": int(self.children[place]),
             "birth_cause": BirthCause(line.birth_cause[place]).label,
+            **places,
             "change": size and dict(zip(self.blocks, size, strict=True)),
             **{name: _happened(ticks[place]) for name, ticks in self.ticks.items()},
         }
@@ -171,7 +187,19 @@ def ancestors(run: Records, organism: int, world: int = 0, say: Say = warnings.w
         branch=branch,
         common=_common(genealogy),
         roots=len(genealogy.roots),
+        islands=_islands(runs, lives.take(line)),
     )
+
+
+def _islands(runs: Sequence[Archive], line: Lives) -> list[str] | None:
+    """Return the island of birth of each organism of a line, from the run in which it was born; None
+    if no run has islands."""
+    found = [""] * len(line)
+    for run in reversed(runs):
+        since = int((line.born <= run.config.begins).sum())
+        first = since if run is not runs[-1] else 0
+        found[first:] = names_of(run.config.islands, line.cell[first:]) or found[first:]
+    return found if any(found) else None
 
 
 def _changes(

@@ -68,7 +68,7 @@ def whole_past(run: Archive, say: Say) -> Past:
             )
             break
         seen.add(_real(place))
-    return Past(past.rooted(), runs)
+    return Past(past.rooted().with_migrations(), runs)
 
 
 def _places(run: Archive) -> list[Path]:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from primordia.errors import InputError
+from primordia.history.islands import migrants, names_of
 from primordia.phylogeny import coalescence, slopes
 from primordia.phylogeny.coalescence import Genealogy, Times
 from primordia.phylogeny.diversity import hill_numbers, phylogenetic_diversity
@@ -17,6 +18,7 @@ from primordia.phylogeny.living import Census, Turnover, last_era
 from primordia.phylogeny.sweeps import Sweep, sweeps
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
+from primordia.settings.islands import Islands
 
 BAND = (2.5, 97.5)
 """95 % of the shadows lie between these percentiles."""
@@ -50,6 +52,11 @@ class WorldLines:
     """coalescence times of the living"""
     neutral_pairs: Times
     """coalescence times that drift alone would give"""
+    islands: list[str] | None = None
+    """name of the island of each line's founder, [K]; None if the world has no islands"""
+    migrations: np.ndarray | None = None
+    """number of births in each line on another island than the parent's, since the lines were founded,
+    int64 (K,); None if the world has no islands"""
 
     @property
     def shares(self) -> np.ndarray:
@@ -131,6 +138,8 @@ class WorldLines:
             "final_share": float(self.shares[-1, place]),
             "p_of_final_share": float(self.p_of_finals[place]),
             "living": self.counts[:, place].tolist(),
+            **({} if self.islands is None else {"island": self.islands[place]}),
+            **({} if self.migrations is None else {"migrations": int(self.migrations[place])}),
         }
 
 
@@ -148,18 +157,23 @@ def lines(run: Records, world: int | None = None, at: int | None = None) -> list
     count = run.lives.worlds
     if world is not None and not 0 <= world < count:
         raise InputError(f"there is no world {world}; the worlds are 0 to {count - 1}")
-    seeds = run.world_seeds.tolist()
+    seeds, islands = run.world_seeds.tolist(), run.config.islands
     worlds: Sequence[int] = range(count) if world is None else [world]
-    return [lines_of_world(each, run.lives.of_world(each), at, seeds[each]) for each in worlds]
+    return [
+        lines_of_world(each, run.lives.of_world(each), at, seeds[each], islands) for each in worlds
+    ]
 
 
-def lines_of_world(world: int, lives: Lives, at: int | None, seed: int) -> WorldLines:
+def lines_of_world(
+    world: int, lives: Lives, at: int | None, seed: int, islands: Islands | None = None
+) -> WorldLines:
     """Measure lines in the lives of one world with this seed; see `lines` for the other arguments."""
     turnover, era = Turnover.of(lives), last_era(lives)
     founded = founding_tick(lives) if at is None else at
     own = founders(lives, founded)
     census = Census(lives, instants(founded, int(lives.ended.max())))
-    counts = census.counts(lines_of(lives, own), len(own))
+    line = lines_of(lives, own)
+    counts = census.counts(line, len(own))
     measured = slopes.observed(counts, census.living, census.ticks)
     with_slope = np.flatnonzero(np.isfinite(measured))
     null = slopes.of_shadows(census, turnover, counts[:, with_slope], seed)
@@ -180,7 +194,20 @@ def lines_of_world(world: int, lives: Lives, at: int | None, seed: int) -> World
         diversity=phylogenetic_diversity(lives, census.ticks),
         pairs=coalescence.observed(Genealogy.of(lives)),
         neutral_pairs=coalescence.neutral(era, Turnover.of(era)),
+        **({} if islands is None or islands.count == 1 else _places(lives, own, line, islands)),
     )
+
+
+def _places(
+    lives: Lives, founders: np.ndarray, line: np.ndarray, islands: Islands
+) -> dict[str, Any]:
+    """Return the islands of lines' founders, and the number of migrants in each line without them."""
+    moved = migrants(lives.parent_row, islands.of_cells(lives.cell)) & (line >= 0)
+    moved[founders] = False
+    return {
+        "islands": names_of(islands, lives.cell[founders]),
+        "migrations": np.bincount(line[moved], minlength=len(founders)),
+    }
 
 
 def two_sided(values: np.ndarray, null: np.ndarray) -> np.ndarray:

@@ -5,13 +5,19 @@ from functools import cached_property
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.compute as pc
 
 from primordia.errors import Trouble
+from primordia.history.ancestry import along
+from primordia.history.islands import migrants
 from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
 
 MATE = "mate"
 """Name of the column, among the facts, that holds the second parent's birth number."""
+ISLAND, MIGRATIONS = "island", "migrations"
+"""Names of the columns, among the facts, that say where an organism was born, and how often its line has
+moved to another island."""
 Facts = dict[str, pa.Array]
 """Further columns by name, one value for each organism, null where there is none."""
 
@@ -23,7 +29,8 @@ class Phylogeny:
     lives: Lives
     """the parent of an organism may be missing among them; see `rooted`"""
     of_births: Facts
-    """`mate`, if the run has mates, and the notes of its mutation"""
+    """`mate`, if the run has mates; `island` and `migrations`, if its worlds have islands; and the notes
+    of its mutation"""
     of_deaths: Facts
     """energy left, food eaten, and the habitat's counts; null for the living"""
 
@@ -70,6 +77,17 @@ class Phylogeny:
             replace(lives, parent=parent), {**self.of_births, MATE: mate}, self.of_deaths
         )
 
+    def with_migrations(self) -> "Phylogeny":
+        """Return the same organisms, each with the migrations on its line of descent, if they have
+        islands."""
+        if ISLAND not in self.of_births:
+            return self
+        names = pc.dictionary_encode(self.of_births[ISLAND].cast(pa.string()))
+        island, parent = names.indices.fill_null(-1).to_numpy(), self.lives.parent_row
+        known = (island >= 0) & (island[parent] >= 0)  # a run of a fork may have no islands
+        moved = along(parent, known & migrants(parent, island))
+        return replace(self, of_births={**self.of_births, MIGRATIONS: pa.array(moved)})
+
 
 def recorded(run: Archive) -> Phylogeny:
     """Return the organisms on record in one run.
@@ -82,9 +100,12 @@ def recorded(run: Archive) -> Phylogeny:
     if run.schema.mates:
         mate = run.mates_of(lives)
         of_births[MATE] = pa.array(mate, mask=mate < 0)
+    if (islands := run.config.islands).count > 1:
+        number = pa.array(islands.of_cells(lives.cell).astype(np.int16))
+        of_births[ISLAND] = pa.DictionaryArray.from_arrays(number, pa.array(islands.names))
     notes = run.notes_of(lives)
     for place, name in enumerate(run.schema.notes):
-        of_births[name] = pa.array(notes[:, place])
+        of_births[f"{name}_" if name in (ISLAND, MIGRATIONS) else name] = pa.array(notes[:, place])
     return Phylogeny(lives, of_births, _of_deaths(run, lives))
 
 

@@ -12,7 +12,7 @@ import pyarrow.compute as pc
 
 from primordia.errors import Trouble
 from primordia.law.world import BirthCause, Cause, Named
-from primordia.phylogeny.phylogeny import MATE, Phylogeny
+from primordia.phylogeny.phylogeny import ISLAND, MATE, MIGRATIONS, Phylogeny
 from primordia.runs.lives import ALIVE
 
 WORLD = 10**12
@@ -45,8 +45,9 @@ def batches(whole: Phylogeny) -> Iterator[pa.RecordBatch]:
 def batch(some: Phylogeny) -> pa.RecordBatch:
     """Return rows of the table, in the order of the organisms."""
     lives = some.lives
-    own, known = ids(lives.world, lives.id), {**some.of_births, **some.of_deaths}
-    mate = known.pop(MATE, None)
+    own, of_births = ids(lives.world, lives.id), dict(some.of_births)
+    mate = of_births.pop(MATE, None)
+    places = {name: of_births.pop(name) for name in (ISLAND, MIGRATIONS) if name in of_births}
     root = lives.parent < 0
     parent = np.where(root, own, ids(lives.world, lives.parent))
     alive = lives.cause == ALIVE
@@ -61,8 +62,12 @@ def batch(some: Phylogeny) -> pa.RecordBatch:
         "birth_cause": _named(lives.birth_cause, BirthCause),
         "death_cause": _named(lives.cause, Cause, alive),
         "lifespan": pa.array(lives.lifespan),
+        **places,
     }
-    for name, values in known.items():  # a habitat or a mutation may have a name of ours
+    for name, values in {
+        **of_births,
+        **some.of_deaths,
+    }.items():  # a habitat or a mutation may have a name of ours
         columns[f"{name}_" if name in columns else name] = values
     return pa.RecordBatch.from_pydict(columns)
 

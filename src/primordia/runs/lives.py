@@ -123,11 +123,18 @@ class Lives:
         first[1:] = np.cumsum(count)[:-1]
         return own & (ordinal - first[self.world] >= np.floor(after * count)[self.world])
 
-    def oldest(self, world: int | None = None, after: float = LATE) -> int:
+    def oldest(
+        self, world: int | None = None, after: float = LATE, among: np.ndarray | None = None
+    ) -> int:
         """Return the row of the longest late life, in one world or in all worlds; see `late`.
 
         Early organisms do not count, since a long-lived founder is not a product of evolution.
         Among equal lives the last-born wins, since time limits cut many lives at the same age.
+
+        Args:
+            world: number of the world.
+            after: share of a world's births after which a birth is late.
+            among: the organisms that count, bool (L,); by default all.
 
         Raises:
             InputError: there is no such world, or nothing was born since the fork.
@@ -135,20 +142,28 @@ class Lives:
         here = self._rows_of_world(world) if world is not None else slice(0, len(self))
         if here.start == here.stop:
             raise InputError(f"there is no world {world}; the worlds are 0 to {self.worlds - 1}")
-        rows = here.start + np.flatnonzero(self.late(after)[here])
+        rows = here.start + np.flatnonzero(self._late_among(among, after)[here])
         if not len(rows):
-            raise InputError("nothing has been born since the fork; name an organism by its number")
+            when = "since the fork" if among is None else "late on this island"
+            raise InputError(f"nothing has been born {when}; name an organism by its number")
         lifespan = self.lifespan[rows]
         return int(rows[len(rows) - 1 - np.argmax(lifespan[::-1])])
 
-    def champions(self) -> np.ndarray:
-        """Return the row of the `oldest` organism of each world with a birth since the run began."""
-        rows = np.flatnonzero(self.late())
+    def champions(self, among: np.ndarray | None = None) -> np.ndarray:
+        """Return the row of the `oldest` organism of each world with a birth since the run began.
+
+        With `among`, bool (L,), only those organisms count.
+        """
+        rows = np.flatnonzero(self._late_among(among))
         world, lifespan = self.world[rows], self.lifespan[rows]
         longest = np.zeros(self.worlds, lifespan.dtype)
         np.maximum.at(longest, world, lifespan)
         longest_lived = rows[lifespan == longest[world]]
         return longest_lived[np.flatnonzero(np.diff(self.world[longest_lived], append=-1))]
+
+    def _late_among(self, among: np.ndarray | None, after: float = LATE) -> np.ndarray:
+        late = self.late(after)
+        return late if among is None else late & among
 
     def row(self, organism: int, world: int = 0) -> int:
         """Return the row of an organism.

@@ -48,6 +48,13 @@ ticks_option = click.option(
 )
 
 
+def born_on(island: str | None, table: Callable[[str, list[Any]], Told]) -> Callable:
+    """Return a function that makes a table whose title names the island of birth, if there is one."""
+    if island is None:
+        return table
+    return lambda name, found: table(f"{name}, born on {island}", found)
+
+
 def arms_of(paths: tuple[Path, ...], trust: bool = False) -> "list[Run]":
     """Return the arms of an experiment, or the named runs as one arm."""
     from primordia.api import Experiment, load

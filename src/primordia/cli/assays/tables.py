@@ -122,9 +122,11 @@ def garden(name: str, found: list[Any]) -> Told:
 
 def line(name: str, found: list[Any]) -> Told:
     """Return the table of lines of descent, `assays.line`."""
+    islands = any(each.migrations is not None for each in found)
     columns = [
         (
             f"organism {each.organism} of world {each.world}",
+            *((each.steps[-1].island, f"{each.migrations:,}") if islands else ()),
             f"{each.generations:,}",
             f"{each.genomes:,}",
             f"{len(each.steps):,}",
@@ -136,12 +138,23 @@ def line(name: str, found: list[Any]) -> Told:
         for each in found
     ]
     names = (
-        *("", "generations", "different genomes", "born again", "ticks that the first lives"),
+        *(
+            "",
+            *(("island of birth", "migrations") if islands else ()),
+            "generations",
+            "different genomes",
+            "born again",
+            "ticks that the first lives",
+        ),
         *("ticks that the last lives", "as good from", "largest step"),
     )
     head, *rows = zip(names, *columns, strict=True)
-    note = "As good: this genome and all later ones live at least nine tenths of the last genome's life."
-    return Told(f"{name}: genomes of a line, born again in the same games", head, rows, (note,))
+    notes = [
+        "As good: this genome and all later ones live at least nine tenths of the last genome's life."
+    ]
+    if islands:
+        notes.append("Migrations: births of the line on another island than the parent's.")
+    return Told(f"{name}: genomes of a line, born again in the same games", head, rows, notes)
 
 
 def compete(name: str, found: list[Any]) -> Told:

@@ -13,8 +13,9 @@ import numpy as np
 
 from primordia.config import Config
 from primordia.errors import InputError
+from primordia.history.islands import number_of
 from primordia.organism.playing.games import Games, Players, play
-from primordia.organism.playing.players import players_of
+from primordia.organism.playing.players import moved, players_of
 from primordia.organism.playing.seats import Frozen
 from primordia.runs.records import Records, on_its_device
 from primordia.settings.fields import setting_fields
@@ -98,6 +99,7 @@ def evaluate(
     ticks: int = TICKS,
     senses: Senses = "live",
     habitat: Mapping[str, Any] | None = None,
+    on: str | None = None,
     **changes: Any,
 ) -> list[Evaluation]:
     """Let organisms play games side by side; no result depends on other organisms.
@@ -111,18 +113,39 @@ def evaluate(
             `ignored`: each organism repeats the actions of an earlier game, which it played with
             its task's settings.
         habitat: changed settings of the habitat, such as `{"senses": [49, 50]}`.
+        on: name of the island on which all play; by default each plays on the island of its birth.
         changes: further changed settings as keywords, such as `sticky=0.25, noops=30`.
 
     Raises:
-        InputError: no such organism was born, the habitat has no such setting, or the brain does not fit
-            the changed habitat.
+        InputError: no such organism was born, the habitat has no such setting, there is no such island,
+            or the brain does not fit the changed habitat.
     """
     if not organisms:
         return []
-    wanted, own = {**(habitat or {}), **changes}, players_of(run, organisms)
+    own = players_of(run, organisms)
     return judged(
-        run.config, own, organisms, games=games, ticks=ticks, senses=senses, habitat=wanted
+        run.config,
+        own,
+        organisms,
+        games=games,
+        ticks=ticks,
+        senses=senses,
+        habitat={**(habitat or {}), **changes},
+        there=on_island(run, own, [world for _, world in organisms], on),
     )
+
+
+def on_island(
+    run: Records, players: Players, worlds: Sequence[int], on: str | None
+) -> Players | None:
+    """Return players of these worlds on an island; None if no island is named.
+
+    Raises:
+        InputError: there is no such island.
+    """
+    if on is None:
+        return None
+    return moved(run, players, np.array(worlds), number_of(run.config.islands, on, "--on"))
 
 
 def judged(
@@ -134,11 +157,15 @@ def judged(
     ticks: int,
     senses: Senses,
     habitat: Mapping[str, Any],
+    there: Players | None = None,
 ) -> list[Evaluation]:
-    """Let players play games side by side; `numbers` name the players in results. See `evaluate`."""
+    """Let players play games side by side; `numbers` name the players in results. See `evaluate`.
+
+    `there` are the same players on another island, if they play there.
+    """
     if games < 1 or ticks < 1:
         raise InputError("evaluate needs at least one game of at least one tick")
-    players = own._replace(habitat=changed(config, habitat).build_habitat())
+    players = (there or own)._replace(habitat=changed(config, habitat).build_habitat())
     script = play(own, 1, ticks) if senses == "ignored" else None
     fixed = players.deterministic
     count = 1 if fixed else games

@@ -7,6 +7,7 @@ import numpy as np
 
 from primordia.history.climate import PastClimate
 from primordia.history.founders import founders
+from primordia.history.islands import number_of
 from primordia.history.rebuilding import rebuild_all
 from primordia.law.metabolism import Rates
 from primordia.organism.playing.games import Players
@@ -29,7 +30,7 @@ def players_of(run: Records, organisms: Sequence[tuple[int, int]]) -> Players:
 
 
 def founders_of(
-    run: Records, worlds: np.ndarray, counts: np.ndarray
+    run: Records, worlds: np.ndarray, counts: np.ndarray, island: str | None = None
 ) -> tuple[np.ndarray, np.ndarray, Players]:
     """Return alternative founders of worlds, each with a different key, spread evenly over all cells.
 
@@ -37,16 +38,38 @@ def founders_of(
         run: the run, or an arm.
         worlds: some worlds, int (V,).
         counts: number of founders of each world, int (V,).
+        island: name of the island on whose cells they are; by default they are on all cells.
 
     Returns:
         the world of each founder, its number in the world, from 0, int (K,) each; and the players.
+
+    Raises:
+        InputError: there is no such island.
     """
     world, number = np.repeat(worlds, counts), np.concatenate([np.arange(n) for n in counts])
     genomes = [founders(run, *each) for each in zip(worlds.tolist(), counts.tolist(), strict=True)]
-    cell = number * run.config.cells // np.repeat(counts, counts)
+    here, islands = range(run.config.cells), run.config.islands
+    if island is not None:
+        here = islands.cells[number_of(islands, island)]
+    cell = here.start + number * len(here) // np.repeat(counts, counts)
     climate = PastClimate(run).of_cells(world, cell, run.ends[world])
     keys = stream(wide(run.world_seeds[world]), Purpose.CONTROL, wide(number))
     return world, number, _players(run, np.concatenate(genomes), keys, climate, cell)
+
+
+def moved(run: Records, players: Players, worlds: np.ndarray, island: int) -> Players:
+    """Return the players on an island, with the settings that it has at the end of the records.
+
+    Args:
+        run: the run, or an arm.
+        players: K organisms.
+        worlds: the world of each, int (K,).
+        island: number of the island.
+    """
+    cells = np.full(len(worlds), run.config.islands.bounds[island])
+    climate = PastClimate(run).of_cells(worlds, cells, run.ends[worlds])
+    rates = Rates.of({name: jnp.asarray(values) for name, values in climate.items()})
+    return players._replace(rates=rates, island=np.full(len(worlds), island))
 
 
 def evaluation_keys(run: Records, world: np.ndarray, number: np.ndarray) -> Wide:
