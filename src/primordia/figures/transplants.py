@@ -58,8 +58,11 @@ def _heat(axes: Axes, islands: tuple[str, ...], lived: np.ndarray, worlds: int) 
         axes.add_patch(home)
         home.set_linewidth(1.4)
     axes.axhline(len(islands) - 0.5, color="white", linewidth=2.4)
-    turned = {"rotation": 30, "ha": "right"} if len("".join(islands)) > WORDS else {}
-    axes.set_xticks(range(len(islands)), islands, **turned)
+    axes.set_xticks(range(len(islands)), islands)
+    if len("".join(islands)) > WORDS:
+        axes.tick_params(axis="x", labelrotation=30)
+        for label in axes.get_xticklabels():
+            label.set_horizontalalignment("right")
     axes.set_yticks(range(len(islands) + 1), [*islands, FOUNDERS])
     axes.tick_params(length=0)
     axes.set(xlabel="island on which they live", ylabel="island of birth")
@@ -146,8 +149,10 @@ def _line(axes: Axes, found: Generalists, where: str) -> None:
 
 def _mark(axes: Axes, gained: Ancestor, lived: float, colour: str) -> None:
     """Mark the ancestor from which on a line masters an island."""
-    edge = {"markeredgecolor": "white", "markeredgewidth": 0.8}
-    axes.plot(gained.generation, lived, "o", color=colour, markersize=6, zorder=4, **edge)
+    axes.plot(
+        gained.generation, lived, "o", color=colour, markersize=6, zorder=4,
+        markeredgecolor="white", markeredgewidth=0.8,
+    )  # fmt: skip
 
 
 def _number(value: float) -> str:

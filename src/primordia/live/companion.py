@@ -39,7 +39,8 @@ class Companion:
 
     def __init__(self) -> None:
         self._who: tuple[int, int] | None = None
-        self._draws = True
+        self._undrawn = set[str]()
+        """islands whose habitats cannot draw; "" is a plain world"""
 
     def find(self, engine: Engine, alone: int | None, step: int = 0) -> int | None:
         """Return the organism's cell, on the axis of all worlds; None if nothing is alive.
@@ -76,9 +77,8 @@ class Companion:
         law, (organisms, worlds) = engine.law, engine.state.world
         world, number = self._who or (0, 0)
         habitat, island = at(engine.habitat, cell % law.cells), named_island(law, cell)
-        where = (f" on {island}" if island else "") + (
-            f" of world {world}" if law.worlds > 1 else ""
-        )
+        where = f" of world {world}" if law.worlds > 1 else ""
+        where += f", on {island}" if island else ""
         title = f"organism {number:,} in cell {cell % law.cells:,}{where}"
         age = int(to_host(worlds.tick)[world]) - int(to_host(organisms.born)[cell])
         senses, memory, body = _perceived(engine, cell, world)
@@ -94,23 +94,26 @@ class Companion:
         below += thoughts.rows(engine, habitat, cell, senses, memory, ago, room.width)
         below = below[: max(room.height - 1, 0)]
         left = room.height - 1 - len(below)
-        picture = self._picture(habitat, body, Room(room.width, left), ago is not None)
+        picture = self._picture(habitat, body, Room(room.width, left), (island, ago is not None))
         return [[Segment(title[: room.width], STRONG)], *picture, *below]
 
-    def _picture(self, habitat: AnyHabitat, body: Body, room: Room, changed: bool) -> list[Row]:
-        """Return a picture of the body, with a frame if its world has `changed`.
+    def _picture(
+        self, habitat: AnyHabitat, body: Body, room: Room, world: tuple[str, bool]
+    ) -> list[Row]:
+        """Return a picture of the body, with a frame if its world, an island, has changed.
 
         There are no rows if the habitat cannot draw the body.
 
         Emulators and many environments draw only bodies that are watched from birth. Other people
         wrote the code that draws, and an error in this code must not end the run.
         """
-        if room.height < 4 or not self._draws:
+        island, changed = world
+        if room.height < 4 or island in self._undrawn:
             return []
         try:
             pixels = np.asarray(habitat.picture(*body).convert("RGB"))
         except Exception:
-            self._draws = False
+            self._undrawn.add(island)
             return []
         if (pixels[:MARGIN] == np.array([*bytes.fromhex(PAPER[1:])], np.uint8)).all():
             pixels = pixels[MARGIN:]

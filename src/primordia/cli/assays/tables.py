@@ -229,7 +229,7 @@ def generalists(name: str, found: list[Any]) -> list[Told]:
 
 def _gains(found: list[Any]) -> Told:
     """Return the births since which the line of a world's most general organism masters an island."""
-    rows = []
+    rows: list[Sequence[str]] = []
     for each in found:
         for gained, island in each.gains:
             k, at = each.islands.index(island), each.line.index(gained)
@@ -245,7 +245,7 @@ def _gains(found: list[Any]) -> Told:
             *("world: island", "organism", "generation", "tick", "born on", "birth"),
             *("lived there before", "and since"),
         ),
-        rows or [("none", *[""] * 7)],
+        rows or [["none", *[""] * 7]],
         (
             "Lived before: the ticks that the ancestor before lives on the island. Only some ancestors"
             " of a long line live again; see --most.",
