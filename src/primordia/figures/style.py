@@ -140,10 +140,13 @@ def curves(axes: Axes, x: np.ndarray, ys: np.ndarray, colour: str = BLUE) -> Non
     axes.plot(x, quartiles[1], color=colour)
 
 
-def title(axes: Axes, text: str, key: dict[str, str] | None = None) -> None:
-    """Write the title of a panel, and below it a key: words in the colours of the things they name."""
+def title(axes: Axes, text: str, key: dict[str, str] | None = None, above: int = 0) -> None:
+    """Write the title of a panel, and below it a key: words in the colours of the things they name.
+
+    `above` are points that stay free between the panel and the key.
+    """
     lines = _lines(axes, key or {})
-    height = 4 + LINE * len(lines)
+    height = 4 + above + LINE * len(lines)
     axes.set_title(text, pad=height)
     for line in lines:
         height -= LINE
