@@ -27,7 +27,7 @@ def transplant(found: list[Transplant]) -> Figure:
     islands = found[0].islands
     figure = Figure(figsize=(style.PAGE, 1.5 + 0.32 * (len(islands) + 1)))
     heat, ratios = figure.subplots(1, 2, width_ratios=(1.25, 1))
-    _heat(heat, islands, np.nanmedian([each.lived for each in found], axis=0), len(found))
+    _heat(heat, islands, _medians(np.array([each.lived for each in found])), len(found))
     _ratio_axis(ratios, [each for one in found for each in (one.home_away, one.local_foreign)])
     compared = {"home / away": style.SKY, "local / foreign": style.BLUE}
     _ratios(ratios, islands, [each.home_away for each in found], -1, compared["home / away"])
@@ -39,6 +39,14 @@ def transplant(found: list[Transplant]) -> Figure:
     ratios.spines["left"].set_visible(False)
     style.title(ratios, "Are natives adapted to their home?", compared)
     return figure
+
+
+def _medians(lived: np.ndarray) -> np.ndarray:
+    """Return the median of the worlds (W, ...) in which a value is known; NaN if there is none."""
+    known = np.isfinite(lived).any(axis=0)
+    found = np.full(lived.shape[1:], np.nan)
+    found[known] = np.nanmedian(lived[:, known], axis=0)
+    return found
 
 
 def _heat(axes: Axes, islands: tuple[str, ...], lived: np.ndarray, worlds: int) -> None:

@@ -12,7 +12,7 @@ function treeSection(world, palette, chosen, show) {
   const state = { at: -1 };
   const tellNode = (at) => {
     state.at = at;
-    readout.textContent = at < 0 ? "\u00a0" : nodeText(world, at);
+    readout.textContent = at < 0 ? "\u00a0" : nodeText(tree.nodes, at, islandsOf(world));
     markLine(drawing, tree.nodes, at);
   };
   const showNode = (at) => {
@@ -39,10 +39,9 @@ function markLine(drawing, nodes, at) {
   }
 }
 
-function nodeText(world, at) {
-  const { nodes } = world.tree;
+function nodeText(nodes, at, islands = []) {
   const { number, born, alive, skipped, parent, island } = nodes[at];
-  const where = world.islands ? `, on ${world.islands[island].name}` : "";
+  const where = islands.length ? `, on ${islands[island].name}` : "";
   const line = parent < 0 ? "no parent on record"
     : `${skipped + 1} generation${skipped ? "s" : ""} from organism ${whole(nodes[parent].number)}`;
   return `organism ${whole(number)}, born at tick ${whole(born)}${where}, ${alive ? "alive" : "an ancestor"}, ${line}`;
