@@ -81,9 +81,9 @@ def transplant(run: Path, trust: bool, out: Path | None, as_json: bool, **option
 def generalists(run: Path, trust: bool, out: Path | None, as_json: bool, **options: Any) -> None:
     """Let late organisms live again on every island, then the ancestors of the most general one.
 
-    An organism masters an island if it lives there longer than the best of as many founders. The
-    second table shows from which ancestor on the line of the most general organism of a world
-    masters an island. Each arm of an experiment is measured.
+    An organism masters an island if it lives there longer than the best of as many founders. The last
+    table shows since which ancestor the line of a world's most general organism masters an island.
+    Each arm of an experiment is measured.
     """
     from primordia.assays.generalists import generalists as measure
 
