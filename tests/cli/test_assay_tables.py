@@ -1,7 +1,7 @@
 """Tables of assays: each cell has the median and quartiles of its own values."""
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from unittest.mock import call, patch
 
@@ -277,7 +277,7 @@ def test_generalists_are_told_with_the_births_at_which_their_line_gained_islands
         "1: dune": ["70", "7", "7,000", "marsh", "mutant", "3", "9"],
         "1: marsh": ["90", "9", "9,000", "marsh", "mutant", "3", "70"],
     }
-    never = [found[1].__class__(*[*vars(found[1]).values()][:-1], line[:2])]
+    never = [replace(found[1], line=line[:2])]
     assert [row[0] for row in tables.generalists("run", never)[2].rows] == ["none"]
 
 

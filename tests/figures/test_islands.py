@@ -77,7 +77,8 @@ def test_generalists_are_drawn_by_home_and_their_line_by_island() -> None:
         a_line((20, 1), (5, 2), (30, 3), (40, 50)),
     )  # fmt: skip
     shares, line = axes_of(assays.generalists, [found])
-    bars = [(bar.get_x() + 0.35, bar.get_y(), bar.get_height()) for bar in shares.patches]
+    drawn: list[Any] = list(shares.patches)
+    bars = [(bar.get_x() + 0.35, bar.get_y(), bar.get_height()) for bar in drawn]
     heights = {(round(x), y): height for x, y, height in bars if height}
     assert heights == {(0, 0): 0.25, (1, 0): 0.25, (2, 0): 0.5}
     dune, marsh = style.island_colours(NAMES).values()
