@@ -1,7 +1,7 @@
 """Tables of assays: each cell has the median and quartiles of its own values."""
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from unittest.mock import call, patch
 
@@ -12,7 +12,9 @@ from primordia.assays.ablate import Ablation
 from primordia.assays.compete import Competition
 from primordia.assays.effects import Effect
 from primordia.assays.garden import Bed
+from primordia.assays.generalists import Ancestor, Generalists
 from primordia.assays.line import Line, Step
+from primordia.assays.transplant import Transplant
 from primordia.cli.assays import options, tables
 from primordia.history.heredity import Inherited, Pairs
 from primordia.history.threshold import Threshold
@@ -233,3 +235,67 @@ def test_unknown_numbers_are_dashes_and_zeros_are_not() -> None:
     assert [row[1] for row in persists.rows] == ["-"] * 4 + ["0 of 0"]
     never = tables.threshold("run", [Threshold(0, 1.0, 0.0, 2.0)])
     assert [row[1] for row in never.rows] == ["1", "0", "2", "0", "0 of 1"]
+
+
+def test_transplants_are_told_by_island_of_birth_and_by_island_of_life() -> None:
+    """Lives are least in the second world. Nothing was born late on the last island."""
+    least = np.array([[100.0, 10, 10], [50, 20, 40], [np.nan] * 3, [5, 5, 5]])
+    found = [
+        Transplant(world, ("dune", "marsh", "sea"), (9, world, 0), least + more)
+        for world, more in enumerate(OFFSETS)
+    ]
+    table = tables.transplant("run", found)
+    assert table.title == "run: mean ticks lived; medians over 3 worlds (quartiles)"
+    assert list(table.head) == ["", "organisms", *(f"living on {n}" for n in found[0].islands)]
+    rows = cells(table)
+    assert rows["born on dune"] == ["27", spread(100), spread(10), spread(10)]
+    assert rows["born on marsh"] == ["3", spread(50), spread(20), spread(40)]
+    assert rows["born on sea"] == ["0", "-", "-", "-"]
+    assert rows["founders"] == ["", spread(5), spread(5), spread(5)]
+    assert cells(tables.transplant("run", found[1:2]))["home / away"] == ["", "10", "0.444", "-"]
+    assert cells(tables.transplant("run", found[1:2]))["local / foreign"] == ["", "2", "2", "-"]
+    assert tables.transplant("run", found[:1]).title == "run: mean ticks lived; 1 world"
+
+
+def ancestor(generation: int, lived: tuple[float, float], *mastered: str) -> Ancestor:
+    """Return an ancestor whose number and tick of birth follow from its generation."""
+    cause, island = ("founder", "dune") if generation == 0 else ("mutant", "marsh")
+    return Ancestor(generation, 10 * generation, 1000 * generation, cause, island, lived, mastered)
+
+
+def test_generalists_are_told_with_the_births_at_which_their_line_gained_islands() -> None:
+    line = (
+        ancestor(0, (5, 1), "dune"),
+        ancestor(3, (3, 2)),
+        ancestor(7, (9, 3), "dune"),
+        ancestor(9, (8, 70), "dune", "marsh"),
+    )
+    found = [
+        Generalists(
+            world, ("dune", "marsh"), np.arange(4), np.array([0, 0, 1, 1]),
+            np.array([[1.0, 2], [5, 2], [5, 9], [6, 9]]), np.array([4.0, 8]), line if world else (),
+        )
+        for world in range(2)
+    ]  # fmt: skip
+    assert found[0].shares.tolist() == [0.25, 0.25, 0.5]
+    shares, lives, gains = tables.generalists("run", found[1:])
+    assert shares.title == "run: 4 late organisms of each world; 1 world"
+    assert cells(shares) == {
+        "masters 0 islands": ["0.25"],
+        "masters 1 island": ["0.25"],
+        "masters 2 islands": ["0.5"],
+    }
+    assert cells(lives) == {"dune": ["5", "4"], "marsh": ["5.5", "8"]}
+    assert cells(gains) == {
+        "1: dune": ["70", "7", "7,000", "marsh", "mutant", "3", "9"],
+        "1: marsh": ["90", "9", "9,000", "marsh", "mutant", "3", "70"],
+    }
+    never = [replace(found[1], line=line[:2])]
+    assert [row[0] for row in tables.generalists("run", never)[2].rows] == ["none"]
+
+
+def test_each_table_of_an_assay_with_several_is_shown(capsys: pytest.CaptureFixture[str]) -> None:
+    told = tables.Told("first", ("", "a"), [("x", "1")]), tables.Told("second", ("",), [("y",)])
+    options.tell("some", {"run": []}, False, None, lambda name, found: [*told])
+    shown = capsys.readouterr().out
+    assert shown.index("first") < shown.index("x") < shown.index("second") < shown.index("y")

@@ -128,8 +128,12 @@ def test_space_time_never_has_more_columns_than_a_screen(cells: int, shown: int)
     assert figure.axes[0].get_xlabel() == "cell of the ring" + some * (shown < cells)
 
 
-SOMETIMES = {"foraging", "threshold", "investment"}
-"""Figures of runs in which one can starve, enough mutants were born, or replication is an act."""
+SOMETIMES = {"foraging", "threshold", "investment", "islands"}
+"""Figures of runs in which one can starve, enough mutants were born, replication is an act, or there are
+islands."""
+
+NEVER = {"threshold", "islands"}
+"""Figures that the run of these tests has not."""
 
 
 @pytest.fixture(scope="module")
@@ -145,7 +149,7 @@ def pictures(run: Path) -> list[Path]:
 def test_plot_writes_every_figure_in_two_formats_to_the_runs_folder(
     run: Path, pictures: list[Path]
 ) -> None:
-    names = [f"{name}.{kind}" for name in KNOWN if name != "threshold" for kind in ("png", "svg")]
+    names = [f"{name}.{kind}" for name in KNOWN if name not in NEVER for kind in ("png", "svg")]
     assert pictures == [run / "figures" / name for name in names]
     assert sorted(path.name for path in (run / "figures").iterdir()) == sorted(names)
 

@@ -17,6 +17,7 @@ from primordia.live.census import Census
 from primordia.live.view import View
 from primordia.random.wide import Wide, wide
 from primordia.runs.loop import Status
+from primordia.settings.islands import Islands
 from tests.worlds import MEADOW, config
 
 
@@ -43,13 +44,20 @@ def posed(alive: list[list[int]], born: list[list[int]], tick: list[int], **more
     return World(Organisms(**organisms), Worlds(**history))
 
 
-def law(cells: int, worlds: int = 1, topology: str = "ring", saturation_ticks: int = 99) -> Any:
+def law(
+    cells: int,
+    worlds: int = 1,
+    topology: str = "ring",
+    saturation_ticks: int = 99,
+    islands: Islands | None = None,
+) -> Any:
     """Return what the view asks of a law."""
     placement = Placement.model_validate({"topology": topology})
     return SimpleNamespace(
         cells=cells,
         worlds=worlds,
         placement=placement,
+        islands=islands or Islands(("",), (0, cells)),
         saturation_ticks=saturation_ticks,
         perceived=lambda senses, energy: senses,
     )

@@ -60,7 +60,7 @@ def test_an_organism_thinks_with_the_genome_of_its_cell(
         return look
 
     monkeypatch.setattr(thoughts, "shared", shared)
-    thoughts.rows(learning, 2, np.arange(4.0), np.arange(9.0), None, 60)
+    thoughts.rows(learning, learning.habitat, 2, np.arange(4.0), np.arange(9.0), None, 60)
     genome, memory, senses = given
     blocks = learning.state.world.organisms.genome
     assert {name: block.tolist() for name, block in genome.items()} == {
@@ -73,7 +73,7 @@ def test_nothing_is_added_for_other_worlds() -> None:
     plain: Any = SimpleNamespace(law=None, habitat=None)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(thoughts, "is_shown", lambda law, habitat: False)
-        assert thoughts.rows(plain, 0, np.zeros(2), np.zeros(0), None, 60) == []
+        assert thoughts.rows(plain, None, 0, np.zeros(2), np.zeros(0), None, 60) == []
 
 
 @pytest.mark.parametrize(

@@ -162,7 +162,7 @@ def test_all_that_a_habitat_lacks_for_pictures_is_named(
     lacks: list[str], rate: float | None, named: str
 ) -> None:
     habitat: Any = SimpleNamespace(lacks=lambda ability: lacks, rate=rate)
-    life: Any = SimpleNamespace(habitat=habitat, run=SimpleNamespace(path="RUN"))
+    life: Any = SimpleNamespace(habitat=habitat, run=SimpleNamespace(path="RUN"), island="")
     with pytest.raises(InputError, match=f"^RUN: the habitat draws no .* it has no {named}$"):
         replay.picture_rate(life)
 
@@ -199,15 +199,26 @@ def test_a_film_has_the_speed_of_the_life_and_at_most_the_rate_of_its_kind_of_fi
     assert [given[5] for given in made[:2]] == [True, True]
 
 
+@pytest.mark.parametrize(
+    ("one", "other", "places"),
+    [
+        (("A", ""), ("B", ""), ("A", "B")),
+        (("A", "dune"), ("A", "sea"), ("A, island dune", "A, island sea")),
+    ],
+)
 def test_lives_whose_ticks_last_for_different_times_are_not_shown_side_by_side(
     monkeypatch: pytest.MonkeyPatch,
+    one: tuple[str, str],
+    other: tuple[str, str],
+    places: tuple[str, str],
 ) -> None:
     lives: Any = [
-        SimpleNamespace(run=SimpleNamespace(path=Path(run)), rate=rate)
-        for run, rate in (("A", 50.0), ("B", 60.0))
+        SimpleNamespace(run=SimpleNamespace(path=Path(run)), rate=rate, island=island)
+        for (run, island), rate in ((one, 50.0), (other, 60.0))
     ]
     monkeypatch.setattr(replay, "picture_rate", lambda life: life.rate)
-    says = "^B: a second has 60 ticks, and 50 in A, so their lives cannot be shown side by side$"
+    first, second = places
+    says = f"^{second}: a second has 60 ticks, and 50 in {first}, so their lives cannot be shown side by"
     with pytest.raises(InputError, match=says):
         replay.film(Path("a.mp4"), *((life, [range(1, 9)]) for life in lives))
 
@@ -253,9 +264,10 @@ def test_a_caption_counts_the_age_from_the_birth_wherever_the_film_begins(
     habitat = SimpleNamespace(picture=lambda *given: None, caption=lambda *given: "push")
     ticks = np.array([1301, 2570])
     stretch: Any = SimpleNamespace(tick=ticks, bodies=ticks, action=ticks, energy=ticks)
-    for begins in (70, 1300):
+    for begins, island in ((70, ""), (1300, "dune")):
         life: Any = SimpleNamespace(
             record=SimpleNamespace(id=[4], born=[70]),
+            island=island,
             begins=begins,
             ends=9000,
             habitat=habitat,
@@ -263,9 +275,10 @@ def test_a_caption_counts_the_age_from_the_birth_wherever_the_film_begins(
         )
         for i in range(len(ticks)):
             replay.picture_of(life, stretch, i)
-    assert written == 2 * [
-        ("organism 4   age 1,231", "tick 1,301", "push"),
-        ("organism 4   age 2,500", "tick 2,570", "push"),
+    assert written == [
+        (f"organism 4   {island}{age}", tick, "push")
+        for island in ("", "on dune   ")
+        for age, tick in (("age 1,231", "tick 1,301"), ("age 2,500", "tick 2,570"))
     ]
 
 
@@ -277,6 +290,7 @@ def test_a_caption_shows_the_energy_and_in_the_last_tick_the_cause_of_death(
     monkeypatch.setattr(replay, "_captioned", lambda picture, *words: written.append(words))
     life: Any = SimpleNamespace(
         record=SimpleNamespace(id=[4], born=[70]),
+        island="",
         begins=70,
         ends=100,
         cause=cause,

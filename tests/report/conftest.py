@@ -29,6 +29,16 @@ def torus(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
+def shore(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Make a run of two worlds on a torus, with islands of a row and of three rows."""
+    where = tmp_path_factory.mktemp("report") / "shore"
+    islands = [{"name": "dune"}, {"name": "marsh", "share": 3.0, "hazard": 0.02}]
+    habitat = {**TORUS["habitat"], "islands": islands}
+    loop.start(config({**TORUS, "habitat": habitat, "seeds": 2, "stop": {"ticks": 400}}), where)
+    return where
+
+
+@pytest.fixture(scope="session")
 def cart(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Make a run with poles on carts, whose lives can be filmed."""
     where = tmp_path_factory.mktemp("report") / "cart"
@@ -48,6 +58,12 @@ def cart_page(cart: Path) -> Path:
 def torus_page(torus: Path) -> Path:
     """Write the page of a run of three worlds on a torus."""
     return primordia.load(torus).report()
+
+
+@pytest.fixture(scope="session")
+def shore_page(shore: Path) -> Path:
+    """Write the page of a run with islands."""
+    return primordia.load(shore).report()
 
 
 @pytest.fixture(scope="session")

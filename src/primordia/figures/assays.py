@@ -12,6 +12,8 @@ from primordia.assays.effects import Effect
 from primordia.assays.garden import Bed
 from primordia.assays.line import Line
 from primordia.figures import style
+from primordia.figures.transplants import generalists as generalists
+from primordia.figures.transplants import transplant as transplant
 from primordia.history.heredity import Inherited
 from primordia.history.threshold import Threshold
 

@@ -11,6 +11,7 @@ from primordia.figures import style
 from primordia.phylogeny.clades import Clades, clades_of, crowd_size
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
+from primordia.settings.islands import Islands
 
 ROWS, COLUMNS = 800, 512
 """Largest numbers of moments and of cells that are drawn. If there are more, evenly
@@ -27,6 +28,8 @@ PALE = 0.7
 COLOURS = np.concatenate([STRONG, [to_rgb(YOUNG)]])
 INKS = np.concatenate([COLOURS, 1 - (1 - COLOURS) * (1 - PALE)])
 """All colours of lines, float64 (30, 3): the strong ones, then the pale ones in the same order."""
+NAMES = 8
+"""Points above the picture for the names of islands."""
 MAX_TAKEOVERS = 8
 """Largest number of takeovers with a mark."""
 
@@ -47,6 +50,8 @@ def draw(run: Records, world: int) -> Figure:
         extent=(-0.5, config.cells - 0.5, len(here) + 0.5, 0.5),
     )
     _label(axes, config, world, len(cells))
+    if config.islands.count > 1:
+        _mark_islands(axes, config.islands)
     _time_axis(axes, here)
     _mark_renewals(axes, here, clades)
     return figure
@@ -114,7 +119,7 @@ def line_codes(lives: Lives, clades: Clades, rows: np.ndarray, ticks: np.ndarray
 def _label(axes: Axes, config: Config, world: int, shown: int) -> None:
     which = f", world {world} (of {config.seeds})" if config.seeds > 1 else ""
     key = {"strong: lines that lasted;  pale: died out;  white: empty": style.SOFT}
-    style.title(axes, f"Lines of descent{which}", key)
+    style.title(axes, f"Lines of descent{which}", key, NAMES if config.islands.count > 1 else 0)
     order = {"ring": " of the ring", "well-mixed": " (all are neighbours)"}
     cell = f"cell{order.get(config.placement.topology, ' of the torus, row after row')}"
     step = -(-config.cells // COLUMNS)
@@ -123,6 +128,22 @@ def _label(axes: Axes, config: Config, world: int, shown: int) -> None:
     style.linear(axes.yaxis)
     for spine in axes.spines.values():
         spine.set_visible(False)
+
+
+def _mark_islands(axes: Axes, islands: Islands) -> None:
+    """Draw the borders of islands, and their names above the picture if they have room there."""
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    room = 72 * 0.75 * figure.get_figwidth() / islands.bounds[-1]
+    for name, cells in zip(islands.names, islands.cells, strict=True):
+        if cells.start:
+            axes.axvline(cells.start - 0.5, color="white", linewidth=1.6)
+            axes.axvline(cells.start - 0.5, color=style.INK, linewidth=0.6)
+        if len(name) * style.LETTER <= room * len(cells):
+            axes.annotate(
+                name, ((cells.start + cells.stop - 1) / 2, 1), (0, 3), ha="center", fontsize=6,
+                xycoords=axes.get_xaxis_transform(), textcoords="offset points", color=style.INK,
+            )  # fmt: skip
 
 
 def _time_axis(axes: Axes, lives: Lives) -> None:

@@ -1,6 +1,6 @@
 """The style of figures: widths of a paper's columns, colours for the colour-blind, and saving."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -8,6 +8,7 @@ from typing import Any
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
@@ -25,6 +26,8 @@ ORANGE, SKY, GREEN, YELLOW = "#e69f00", "#56b4e9", "#009e73", "#f0e442"
 BLUE, VERMILION, PURPLE = "#0072b2", "#d55e00", "#cc79a7"
 PALETTE = BLUE, ORANGE, GREEN, VERMILION, PURPLE, SKY, YELLOW
 """The palette of Okabe and Ito (2008)."""
+ISLANDS = PALETTE[:-1]
+"""Colours of few islands, without yellow, in which words are hard to read."""
 
 PARAMETERS: Any = {
     "font.family": "DejaVu Sans",
@@ -137,10 +140,13 @@ def curves(axes: Axes, x: np.ndarray, ys: np.ndarray, colour: str = BLUE) -> Non
     axes.plot(x, quartiles[1], color=colour)
 
 
-def title(axes: Axes, text: str, key: dict[str, str] | None = None) -> None:
-    """Write the title of a panel, and below it a key: words in the colours of the things they name."""
+def title(axes: Axes, text: str, key: dict[str, str] | None = None, above: int = 0) -> None:
+    """Write the title of a panel, and below it a key: words in the colours of the things they name.
+
+    `above` are points that stay free between the panel and the key.
+    """
     lines = _lines(axes, key or {})
-    height = 4 + LINE * len(lines)
+    height = 4 + above + LINE * len(lines)
     axes.set_title(text, pad=height)
     for line in lines:
         height -= LINE
@@ -171,6 +177,14 @@ def worlds_key(count: int) -> dict[str, str]:
 def pooled_key(count: int) -> dict[str, str]:
     """Return the key of a panel that shows several worlds together; it is empty for one world."""
     return {f"{count} worlds together": SOFT} if count > 1 else {}
+
+
+def island_colours(names: Sequence[str]) -> dict[str, str]:
+    """Return a colour for each island; many islands, in their order, are colours of one scale."""
+    if len(names) <= len(ISLANDS):
+        return dict(zip(names, ISLANDS, strict=False))
+    scale = matplotlib.colormaps["viridis"](np.linspace(0, 0.92, len(names)))
+    return {name: to_hex(colour) for name, colour in zip(names, scale, strict=True)}
 
 
 def remark(axes: Axes, text: str) -> None:

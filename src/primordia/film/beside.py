@@ -10,6 +10,7 @@ from PIL import Image
 
 from primordia.film.moments import RATE
 from primordia.film.oldest import oldest_so_far, shown
+from primordia.habitats.archipelago import at
 from primordia.organism.reliving import replay
 from primordia.organism.reliving.panel import Panels
 from primordia.organism.reliving.relived import RelivedLife
@@ -30,6 +31,8 @@ class Beside(NamedTuple):
 def oldest(run: Records, lives: Lives, ticks: np.ndarray) -> Iterator[Beside]:
     """Yield a picture for each moment: the life of the oldest organism so far, from birth on.
 
+    There is no picture while the oldest lives on an island whose habitat draws none.
+
     Args:
         run: the run.
         lives: the lives of one world.
@@ -39,7 +42,9 @@ def oldest(run: Records, lives: Lives, ticks: np.ndarray) -> Iterator[Beside]:
     for row in rows.tolist():
         if row != now:
             now, count = row, int((rows == row).sum())
-            pictures = pictures_of(run, int(lives.id[row]), int(lives.world[row]), count)
+            pictures: Iterator[Image.Image | None] = repeat(None)
+            if not replay.lacking(at(run.habitat, int(lives.cell[row]))):
+                pictures = pictures_of(run, int(lives.id[row]), int(lives.world[row]), count)
         yield Beside(next(pictures), f"the oldest so far: organism {lives.id[row]:,}")
 
 

@@ -87,7 +87,7 @@ def _pictures(
     run: Records, lives: Lives, shown: np.ndarray, lived: Iterator[Beside]
 ) -> Iterator[Image.Image]:
     config = run.config
-    form = shape(config.placement, config.cells)
+    form = shape(config.placement, config.cells, config.islands)
     world = f", world {lives.world[0]}" if config.seeds > 1 else ""
     frames = Frames(f"{config.task}{world}", replay.lacking(run.habitat) != [])
     births = births_until(run, lives, shown)

@@ -322,18 +322,39 @@ def body_in(arrays: Mapping[str, np.ndarray], islands: Islands, place: int) -> d
         islands: the islands of a world.
         place: the cell, counted over all worlds.
     """
-    world, cell = divmod(place, islands.bounds[-1])
     own, row, shared = "bodies", place, ("bodies.senses",)
     if islands.count > 1:
-        number = int(islands.of_cells(cell))
+        number, row = _place_of(place, islands)
         own = f"bodies.{ARRAYS}{number}"
-        row = world * islands.sizes[number] + cell - islands.bounds[number]
     found = {
         f"bodies{name.removeprefix(own)}": array[row : row + 1]
         for name, array in arrays.items()
         if name == own or (name.startswith(f"{own}.") and name not in shared)
     }
     return found | {name: arrays[name][place : place + 1] for name in shared if name in arrays}
+
+
+def bodies_with(bodies: Bodies, habitat: AnyHabitat, place: int) -> tuple[Bodies, int]:
+    """Return the bodies of the island of a cell, and the row of the cell's body among them.
+
+    In a world without islands they are all bodies, and the cell itself.
+
+    Args:
+        bodies: the bodies of all worlds.
+        habitat: the habitat of the worlds.
+        place: the cell, counted over all worlds.
+    """
+    if not isinstance(habitat, Archipelago):
+        return bodies, place
+    number, row = _place_of(place, habitat.islands)
+    return bodies.island[number], row
+
+
+def _place_of(place: int, islands: Islands) -> tuple[int, int]:
+    """Return the number of the island of a cell, counted over all worlds, and its row there."""
+    world, cell = divmod(place, islands.bounds[-1])
+    number = int(islands.of_cells(cell))
+    return number, world * islands.sizes[number] + cell - islands.bounds[number]
 
 
 def split(rows: Array, sizes: tuple[int, ...]) -> list[Array]:
@@ -401,3 +422,8 @@ def at(habitat: AnyHabitat, cell: int) -> AnyHabitat:
     if not isinstance(habitat, Archipelago):
         return habitat
     return habitat.habitats[int(habitat.islands.of_cells(cell))]
+
+
+def each_in(habitat: AnyHabitat) -> tuple[AnyHabitat, ...]:
+    """Return the habitats of all islands, or the only habitat."""
+    return habitat.habitats if isinstance(habitat, Archipelago) else (habitat,)

@@ -9,6 +9,7 @@ import numpy as np
 from primordia.engine.state import Limits
 from primordia.law.world import World
 from primordia.random.wide import Wide, to_host
+from primordia.settings.islands import Islands
 
 
 @dataclass(frozen=True)
@@ -30,10 +31,15 @@ class Census:
     """mean age of the living of all worlds, in ticks; 0 if none live"""
     oldest: int
     """age of the oldest organism of all worlds, in ticks; 0 if none live"""
+    by_island: np.ndarray | None = None
+    """living of each island, in all worlds together, int64 (K,); None without islands"""
 
     @classmethod
-    def of(cls, world: World, alone: int | None = None) -> "Census":
-        """Count the organisms of all worlds, or of one (`alone`); every cell is read once."""
+    def of(cls, world: World, alone: int | None = None, islands: Islands | None = None) -> "Census":
+        """Count the organisms of all worlds, or of one (`alone`); every cell is read once.
+
+        `islands` are those of each world; the living of each island are counted if there are several.
+        """
         organisms, worlds = world
         cells, own = len(organisms.alive) // len(worlds.calm), slice(None)
         if alone is not None:
@@ -43,6 +49,9 @@ class Census:
         living = np.flatnonzero(alive)
         high, low = (np.asarray(words)[own][living].astype(np.int64) for words in organisms.born)
         ages = tick[living // cells] - (high << 32 | low)
+        by_island = None
+        if islands is not None and islands.count > 1:
+            by_island = np.bincount(islands.of_cells(living % cells), minlength=islands.count)
         return cls(
             tick=tick,
             alive=np.count_nonzero(alive.reshape(len(tick), -1), axis=1),
@@ -54,6 +63,7 @@ class Census:
             saturated=_count(worlds.saturated),
             mean_age=float(ages.mean()) if len(ages) else 0.0,
             oldest=int(ages.max(initial=0)),
+            by_island=by_island,
         )
 
 

@@ -10,8 +10,10 @@ from rich.segment import Segment
 
 from primordia.compiled import shared
 from primordia.engine.engine import Engine
-from primordia.habitats.contract import Bodies, JaxHabitat
+from primordia.habitats.archipelago import at, bodies_with
+from primordia.habitats.contract import AnyHabitat, Bodies, JaxHabitat
 from primordia.habitats.framed import MARGIN, PAPER
+from primordia.law.law import Law
 from primordia.law.metabolism import ONE
 from primordia.live import thoughts
 from primordia.live.forms import Room
@@ -37,7 +39,8 @@ class Companion:
 
     def __init__(self) -> None:
         self._who: tuple[int, int] | None = None
-        self._draws = True
+        self._undrawn = set[str]()
+        """islands whose habitats cannot draw; "" is a plain world"""
 
     def find(self, engine: Engine, alone: int | None, step: int = 0) -> int | None:
         """Return the organism's cell, on the axis of all worlds; None if nothing is alive.
@@ -73,7 +76,9 @@ class Companion:
             return [[Segment("nothing is alive"[: room.width], FAINT)]]
         law, (organisms, worlds) = engine.law, engine.state.world
         world, number = self._who or (0, 0)
+        habitat, island = at(engine.habitat, cell % law.cells), named_island(law, cell)
         where = f" of world {world}" if law.worlds > 1 else ""
+        where += f", on {island}" if island else ""
         title = f"organism {number:,} in cell {cell % law.cells:,}{where}"
         age = int(to_host(worlds.tick)[world]) - int(to_host(organisms.born)[cell])
         senses, memory, body = _perceived(engine, cell, world)
@@ -82,36 +87,33 @@ class Companion:
             facts["energy"] = f"{int(np.asarray(organisms.energy)[cell]) / ONE:,.1f}"
         if eaten := int(np.asarray(organisms.eaten)[cell]):
             facts["food eaten"] = f"{eaten / ONE:,.1f}"
-        facts |= {"does next": self._caption(engine, body), "senses": levels(senses)}
+        facts |= {"does next": _caption(habitat, body), "senses": levels(senses)}
         facts["memory"] = levels(memory)
         below = [_fact(name, text, room.width) for name, text in facts.items() if text]
-        ago = since_change(engine.habitat, body.body, age)
-        below += thoughts.rows(engine, cell, senses, memory, ago, room.width)
+        ago = since_change(habitat, body.body, age)
+        below += thoughts.rows(engine, habitat, cell, senses, memory, ago, room.width)
         below = below[: max(room.height - 1, 0)]
         left = room.height - 1 - len(below)
-        picture = self._picture(engine, body, Room(room.width, left), ago is not None)
+        picture = self._picture(habitat, body, Room(room.width, left), (island, ago is not None))
         return [[Segment(title[: room.width], STRONG)], *picture, *below]
 
-    def _caption(self, engine: Engine, body: Body) -> str:
-        try:
-            return engine.habitat.caption(*body)
-        except Exception:  # see _picture
-            return np.array2string(body.action, precision=2)
-
-    def _picture(self, engine: Engine, body: Body, room: Room, changed: bool) -> list[Row]:
-        """Return a picture of the body, with a frame if its world has `changed`.
+    def _picture(
+        self, habitat: AnyHabitat, body: Body, room: Room, world: tuple[str, bool]
+    ) -> list[Row]:
+        """Return a picture of the body, with a frame if its world, an island, has changed.
 
         There are no rows if the habitat cannot draw the body.
 
         Emulators and many environments draw only bodies that are watched from birth. Other people
         wrote the code that draws, and an error in this code must not end the run.
         """
-        if room.height < 4 or not self._draws:
+        island, changed = world
+        if room.height < 4 or island in self._undrawn:
             return []
         try:
-            pixels = np.asarray(engine.habitat.picture(*body).convert("RGB"))
+            pixels = np.asarray(habitat.picture(*body).convert("RGB"))
         except Exception:
-            self._draws = False
+            self._undrawn.add(island)
             return []
         if (pixels[:MARGIN] == np.array([*bytes.fromhex(PAPER[1:])], np.uint8)).all():
             pixels = pixels[MARGIN:]
@@ -125,23 +127,38 @@ class Companion:
         return photograph(np.asarray(small))
 
 
+def named_island(law: Law, cell: int) -> str:
+    """Return the name of the island of a cell, on the axis of all worlds; "" without islands."""
+    return law.islands.names[int(law.islands.of_cells(cell % law.cells))]
+
+
+def _caption(habitat: AnyHabitat, body: Body) -> str:
+    try:
+        return habitat.caption(*body)
+    except Exception:  # see _picture
+        return np.array2string(body.action, precision=2)
+
+
 def _fact(name: str, text: str, width: int) -> Row:
     return [Segment(f"{name:<{LABEL}}", FAINT), Segment(text[: max(width - LABEL, 0)])]
 
 
 def _perceived(engine: Engine, cell: int, world: int) -> tuple[np.ndarray, np.ndarray, Body]:
     """Return senses (S,), memory (M,), and the body of a cell's organism with its next action."""
-    law, habitat, (organisms, worlds) = engine.law, engine.habitat, engine.state.world
+    law, (organisms, worlds) = engine.law, engine.state.world
 
-    def own(tree: Any) -> Any:
+    def own(tree: Any, row: int = cell) -> Any:
         """Copy the organism's part of arrays, (1, ...) from (C, ...)."""
-        return jax.tree.map(lambda leaf: np.array(np.asarray(leaf)[cell : cell + 1]), tree)
+        return jax.tree.map(lambda leaf: np.array(np.asarray(leaf)[row : row + 1]), tree)
 
-    bodies = own(engine.state.bodies)
-    if isinstance(habitat, JaxHabitat):
-        senses, seen = shared(_sense, habitat)(bodies), bodies
+    def embodied(bodies: Bodies) -> Any:
+        return own(*bodies_with(bodies, engine.habitat, cell))
+
+    if isinstance(engine.habitat, JaxHabitat):
+        seen = embodied(engine.state.bodies)
+        senses = shared(_sense, at(engine.habitat, cell % law.cells))(seen)
     else:
-        senses, seen = bodies, own(habitat.seen())
+        senses, seen = own(engine.state.bodies), embodied(engine.habitat.seen())
     seed, tick = (to_host(each)[world : world + 1] for each in (worlds.seed, worlds.tick))
     mind = Mind(own(organisms.genome), wide(seed), jnp.array([cell % law.cells], jnp.int32))
     memory, perceived = own(organisms.memory), law.perceived(senses, own(organisms.energy))

@@ -7,7 +7,9 @@ from typing import ClassVar, NamedTuple, Protocol
 import numpy as np
 
 from primordia.law.law import Law
+from primordia.live.borders import bracketed, edge, ruler
 from primordia.live.paint import Cells, Row, field, mosaic, skyline
+from primordia.settings.islands import Islands
 
 TALLEST = 4
 """Largest number of rows of a skyline."""
@@ -45,7 +47,8 @@ class Form(Protocol):
 def form_of(law: Law) -> Form:
     """Return the form of a law's worlds. In a well-mixed world the places have no meaning."""
     rows, columns = law.placement.shape(law.cells)
-    return Ring(law.cells) if rows == 1 else Torus(rows, columns)
+    islands = law.islands if law.islands.count > 1 else None
+    return Ring(law.cells, islands) if rows == 1 else Torus(rows, columns, islands)
 
 
 @dataclass(frozen=True)
@@ -53,6 +56,8 @@ class Ring:
     """Cells as a skyline. Many cells make several skylines. A single skyline has its past below it."""
 
     cells: int
+    islands: Islands | None = None
+    """a row below a skyline shows their borders; None: a plain world"""
     age: ClassVar[str] = "height: age"
 
     @property
@@ -71,14 +76,17 @@ class Ring:
         count = min(-(-self.cells * wide // (room.width // wide * wide)), most)
         across = min(-(-self.cells // count), room.width // wide)
         shown = min(across * count, self.cells)
-        gap = 1 if count > 1 else 0
+        gap = 1 if count > 1 or self.islands else 0
         tall = min(max(room.height // count - gap, 1), TALLEST)
-        with_gaps = count > 1 and count * (tall + 1) - 1 <= room.height
+        with_gaps = gap and count * (tall + 1) - (0 if self.islands else 1) <= room.height
         rows: list[Row] = []
         for at in range(0, shown, across):
-            if with_gaps and rows:
+            if with_gaps and rows and not self.islands:
                 rows.append([])
-            rows += skyline(cells.take(slice(at, min(at + across, shown))), wide, tall)
+            end = min(at + across, shown)
+            rows += skyline(cells.take(slice(at, end)), wide, tall)
+            if with_gaps and self.islands:
+                rows.append(ruler(self.islands, at, end, wide))
         left = room.height - len(rows)
         if count == 1:
             earlier = [moment[:shown].repeat(wide) for moment in past[: 2 * left]]
@@ -93,6 +101,8 @@ class Torus:
 
     rows: int
     columns: int
+    islands: Islands | None = None
+    """brackets beside the picture show them; None: a plain world"""
     age: ClassVar[str] = "light: age"
 
     @property
@@ -102,10 +112,27 @@ class Torus:
 
     def scale(self, room: Room) -> int:
         """Return the width of a cell, in columns; see `Form`."""
-        return min(room.width // self.columns, 2 * room.height // self.rows, 2 * WIDEST)
+        return self._scale(self._beside(room)) or self._scale(room)
 
     def draw(self, cells: Cells, past: Sequence[np.ndarray], room: Room) -> tuple[list[Row], str]:
         """Draw the cells in their places; see `Form`."""
+        drawn, part = self._drawn(cells, room)
+        if self.islands is None or not self._scale(self._beside(room)):
+            return drawn, part
+        return bracketed(drawn, self.islands, self.columns, self.scale(room)), part
+
+    def _beside(self, room: Room) -> Room:
+        """Return the room that the names of islands leave for cells."""
+        return (
+            room if self.islands is None else room._replace(width=room.width - edge(self.islands))
+        )
+
+    def _scale(self, room: Room) -> int:
+        """Return the width of a cell without names of islands; 0 if not all cells fit."""
+        fitting = min(room.width // self.columns, 2 * room.height // self.rows, 2 * WIDEST)
+        return max(fitting, 0)
+
+    def _drawn(self, cells: Cells, room: Room) -> tuple[list[Row], str]:
         scale = max(self.scale(room), 1)
         high, across = (
             min(self.rows, 2 * room.height // scale),

@@ -10,6 +10,7 @@ from primordia.config import Config
 from primordia.law.world import Cause
 from primordia.live.census import Census
 from primordia.live.paint import FAINT, Row
+from primordia.settings.islands import Islands
 
 STRONG = Style(bold=True)
 FILLED = Style(color="green")
@@ -43,7 +44,13 @@ def heading(config: Config, pace: str, seconds: float, width: int) -> Row:
     return [Segment(task, STRONG), Segment(about, FAINT), Segment(" " * gap + clock, FAINT)]
 
 
-def numbers(census: Census, cells: int, outlook: Outlook, takeovers: int | None) -> dict[str, str]:
+def numbers(
+    census: Census,
+    cells: int,
+    outlook: Outlook,
+    takeovers: int | None,
+    islands: Islands | None = None,
+) -> dict[str, str]:
     """Return counts by name, the most important first; unknown counts are left out.
 
     Args:
@@ -51,6 +58,7 @@ def numbers(census: Census, cells: int, outlook: Outlook, takeovers: int | None)
         cells: number of cells of one world.
         outlook: speed and remaining time.
         takeovers: number of takeovers in all worlds; None if lines of descent are not followed.
+        islands: the islands of a world, if the census has counted their organisms.
     """
     worlds = len(census.tick)
     values = {
@@ -65,6 +73,9 @@ def numbers(census: Census, cells: int, outlook: Outlook, takeovers: int | None)
         "takeovers": "" if takeovers is None else f"{takeovers:,}",
         "extinctions": f"{census.extinctions.sum():,}",
     }
+    if islands is not None and census.by_island is not None:
+        counts = zip(islands.names, census.by_island.tolist(), islands.sizes, strict=True)
+        values |= {f"on {name}": _share(alive, worlds * size) for name, alive, size in counts}
     return {name: value for name, value in values.items() if value}
 
 

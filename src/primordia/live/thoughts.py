@@ -9,6 +9,7 @@ from rich.style import Style
 from primordia.compiled import shared
 from primordia.engine.engine import Engine
 from primordia.habitats.changing import is_changing
+from primordia.habitats.contract import AnyHabitat
 from primordia.live.paint import FAINT, Row, levels, photograph
 from primordia.live.panel import STRONG
 from primordia.organism.inside import (
@@ -29,19 +30,26 @@ NEW = Style(color="white", bgcolor=CHANGED)
 
 
 def rows(
-    engine: Engine, cell: int, senses: np.ndarray, memory: np.ndarray, ago: int | None, width: int
+    engine: Engine,
+    habitat: AnyHabitat,
+    cell: int,
+    senses: np.ndarray,
+    memory: np.ndarray,
+    ago: int | None,
+    width: int,
 ) -> list[Row]:
     """Return rows about the next thought of the organism in a cell; none if pictures show nothing.
 
     Args:
         engine: the run.
+        habitat: the habitat in which the organism lives.
         cell: the organism's cell, on the axis of all worlds.
         senses: (S,).
         memory: (M,).
         ago: ticks since its world changed; None if nothing is new.
         width: columns of the rows.
     """
-    law, habitat = engine.law, engine.habitat
+    law = engine.law
     if not is_shown(law, habitat):
         return []
     blocks = engine.state.world.organisms.genome

@@ -145,7 +145,8 @@ class View:
         """Return the page of words that is shown; nothing if the world is shown."""
         if self._page is None:
             return []
-        found = pages(room.width, room.height)
+        islands = self._status is not None and self._status.engine.law.islands.count > 1
+        found = pages(room.width, room.height, islands)
         if self._page >= len(found):
             self._page = None
             return []
@@ -159,10 +160,10 @@ class View:
     def _world(self, status: Status, room: Room) -> list[Row]:
         engine, alone = status.engine, self._alone
         law, world, lines = engine.law, engine.state.world, self._descent.lines
-        census = Census.of(world)
+        census = Census.of(world, islands=law.islands)
         self._speed.add(time.perf_counter(), census)
         if alone is not None:
-            census = Census.of(world, alone)
+            census = Census.of(world, alone, law.islands)
         values = self._numbers(status, census)
 
         def draw(room: Room) -> Scene:
@@ -184,7 +185,8 @@ class View:
         left = self._speed.seconds_left(status.limits) if status.limits else None
         outlook = Outlook(self._speed.organism_ticks_per_s(), left)
         shown = range(law.worlds) if alone is None else [alone]
-        return numbers(census, law.cells, outlook, self._descent.takeovers(shown))
+        takeovers = self._descent.takeovers(shown)
+        return numbers(census, law.cells, outlook, takeovers, law.islands)
 
 
 def _no_keys(seconds: float) -> str:

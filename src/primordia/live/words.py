@@ -53,12 +53,20 @@ WORDS = {
     "changes": "How long ago the organism's world changed, if that is new; a frame shows it too.",
 }
 
+OF_ISLANDS = {
+    "on NAME": "Living organisms on an island, and the number of its cells.",
+    "island": "A part of the world's cells with a habitat and rates of its own.",
+}
 
-def pages(width: int, height: int) -> list[list[Row]]:
-    """Return pages of keys and words with their explanations; `height` limits the rows of a page."""
+
+def pages(width: int, height: int, islands: bool = False) -> list[list[Row]]:
+    """Return pages of keys and words with their explanations; `height` limits the rows of a page.
+
+    The words on islands are left out if the world has none.
+    """
     room = max(min(width, WIDE) - NAME, 8)
     found: list[list[Row]] = [[]]
-    for name, text in {**KEYS, **WORDS}.items():
+    for name, text in {**KEYS, **WORDS, **(OF_ISLANDS if islands else {})}.items():
         lines = wrap(text, room)
         if len(found[-1]) + len(lines) > height and found[-1]:
             found.append([])

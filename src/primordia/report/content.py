@@ -8,6 +8,7 @@ from primordia.experiments.campaign import Campaign
 from primordia.history.info import info
 from primordia.history.summary import seeds_text
 from primordia.progress import steps
+from primordia.report import islands
 from primordia.report.arms import arms, names
 from primordia.report.curves import panels
 from primordia.report.facts import facts
@@ -46,13 +47,14 @@ def of_run(run: Records, filmed: bool = True) -> dict[str, Any]:
         "subtitle": f"{_name(run.path)}, {seeds_text(seeds)}",
         "words": words(run, numbers),
         "numbers": _numbers(numbers["worlds"]),
-        "panels": panels(run),
+        "panels": [*panels(run), *islands.panels(run)],
         "worlds": [
             view(run, world, f"seed {seeds[world]}", len(worlds))
             for world in steps(worlds, "drawing")
         ],
         "left_out": f"{count(left_out, 'further world')} not shown" if left_out else "",
         "films": films(run) if filmed else None,
+        **_islands(run),
         "facts": [{"name": "", **facts(run, numbers)}],
     }
 
@@ -93,7 +95,8 @@ def of_experiment(chosen: Campaign) -> dict[str, Any]:
 
 def view(run: Records, world: int, name: str, share: int) -> dict[str, Any]:
     """Return the pictures of one world of a run: space-time, organisms, film, phylogeny."""
-    ground = Ground(run.lives.of_world(world), run.config.cells, share)
+    several = run.config.islands if run.config.islands.count > 1 else None
+    ground = Ground(run.lives.of_world(world), run.config.cells, share, several)
     return {
         "name": name,
         "topology": run.config.placement.topology,
@@ -102,7 +105,14 @@ def view(run: Records, world: int, name: str, share: int) -> dict[str, Any]:
         "organisms": organisms(ground.lives, ground.rows),
         "film": film(ground, run.config),
         "tree": tree(ground),
+        **({} if several is None else {"islands": islands.places(several)}),
     }
+
+
+def _islands(run: Records) -> dict[str, Any]:
+    """Return the section on islands, if there are any."""
+    found = islands.overview(run)
+    return {} if found is None else {"islands": found}
 
 
 def _name(path: Path) -> str:

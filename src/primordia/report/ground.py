@@ -22,6 +22,7 @@ from primordia.figures.spacetime import (
 from primordia.phylogeny.clades import Clades, clades_of, crowd_size
 from primordia.report.packed import packed
 from primordia.runs.lives import Lives
+from primordia.settings.islands import Islands
 
 WHOLE = 100_000
 """A world with at most this many births has all its organisms in the page."""
@@ -40,6 +41,8 @@ class Ground:
     """cells of the world"""
     share: int = 1
     """number of worlds in the page; each world gets an equal part of the page's size"""
+    islands: Islands | None = None
+    """the islands of the world; None: a plain world"""
 
     @cached_property
     def clades(self) -> Clades:

@@ -11,6 +11,7 @@ import numpy as np
 
 from primordia import device, interrupts
 from primordia.errors import InputError, Trouble
+from primordia.habitats.archipelago import at
 from primordia.organism.inside import is_shown
 from primordia.organism.reliving.replay import replay
 from primordia.runs.lives import Lives
@@ -60,8 +61,9 @@ def chosen(lives: Lives) -> dict[str, int]:
 
 def _film(run: Records, title: str, row: int) -> dict[str, Any]:
     number, world = int(run.lives.id[row]), int(run.lives.world[row])
-    kind, ticks = run.habitat.kind, int(run.lives.lifespan[row])
-    if ticks > LONGEST[kind]:
+    islands = run.config.islands
+    habitat, ticks = at(run.habitat, int(run.lives.cell[row])), int(run.lives.lifespan[row])
+    if ticks > LONGEST[habitat.kind]:
         raise InputError(
             f"the life of organism {number} is {ticks:,} ticks long, too long for a page;"
             f" `primordia replay` films this life"
@@ -74,9 +76,12 @@ def _film(run: Records, title: str, row: int) -> dict[str, Any]:
         path = replay(run, number, world, Path(folder) / "life.mp4", part=PART)
         data = base64.b64encode(path.read_bytes()).decode("ascii")
     where = f" of world {world}" if run.lives.worlds > 1 else ""
+    where += (
+        f" on {name}" if (name := islands.names[int(islands.of_cells(run.lives.cell[row]))]) else ""
+    )
     end = "dead" if run.lives.died[row] else "alive"
     about = (
         f"Organism {number:,}{where}: born at tick {run.lives.born[row]:,}, {ticks:,} ticks, {end}"
     )
-    panel = is_shown(run.law, run.habitat)
+    panel = is_shown(run.law, habitat)
     return {"title": title, "about": about, "data": data, "panel": panel}

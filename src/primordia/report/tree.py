@@ -46,7 +46,8 @@ def tree(ground: Ground) -> dict[str, Any] | None:
         `nodes`, parents before their children, each with the birth `number` of its organism; `parent`:
         place among the nodes, or -1; `start`, `stop`: times, in births, at which the node's line
         leaves the parent's line, and at which the bar ends; `level`: from 0, a level for each of
-        the living; `ink` of the line; `skipped`: number of ancestors between the node and its parent.
+        the living; `ink` of the line; `skipped`: number of ancestors between the node and its parent;
+        `island`: its number, if the world has islands.
     """
     lives = ground.lives
     living = np.flatnonzero(~lives.died)
@@ -69,6 +70,8 @@ def tree(ground: Ground) -> dict[str, Any] | None:
         "ink": ground.inks(line_codes(lives, ground.clades, nodes.row[:, None], now)[:, 0]),
         "skipped": nodes.skipped,
     }
+    if ground.islands is not None:
+        columns["island"] = ground.islands.of_cells(lives.cell[nodes.row])
     rows = zip(*(column.tolist() for column in columns.values()), strict=True)
     return {
         "living": len(living),

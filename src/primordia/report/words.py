@@ -56,6 +56,11 @@ def setting(config: Config) -> str:
         "There is no goal and no reward. An organism lives until its world kills it. Meanwhile"
         f" the organism copies itself into {room} cell{taken}.",
     ]
+    if config.islands.count > 1:
+        parts.append(
+            f"The cells are divided into {config.islands.count} islands: {listed(config.islands.names)}."
+            " Each of them has a habitat and rates of its own."
+        )
     if config.inheritance == "parent":
         parts.append("Copies differ from their parent by small random changes.")
     else:
@@ -65,6 +70,12 @@ def setting(config: Config) -> str:
     if config.metabolism is not None:
         parts.append("An organism that gathers too little food starves.")
     return " ".join(parts)
+
+
+def listed(names: Sequence[str]) -> str:
+    """Return names as text, with "and" before the last."""
+    *others, last = names
+    return f"{', '.join(others)} and {last}" if others else last
 
 
 def _one_world(worlds: list[dict[str, Any]], run: Records, rate: float | None) -> list[str]:

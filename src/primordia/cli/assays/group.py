@@ -2,7 +2,7 @@
 
 import click
 
-from primordia.cli.assays import of_lives, of_pairs, of_records, of_runs
+from primordia.cli.assays import of_islands, of_lives, of_pairs, of_records, of_runs
 
 
 @click.group()
@@ -18,5 +18,7 @@ for command in (
     of_runs.line,
     of_lives.ablate,
     of_pairs.compete,
+    of_islands.transplant,
+    of_islands.generalists,
 ):
     assay.add_command(command)

@@ -68,23 +68,25 @@ def tell(
     found: Mapping[str, list[Any]],
     as_json: bool,
     out: Path | None,
-    table: Callable[[str, list[Any]], Told],
+    table: Callable[[str, list[Any]], Told | list[Told]],
 ) -> None:
-    """Print a table for each arm, or one JSON object for all; draw figures if a folder is given.
+    """Print the tables of each arm, or one JSON object for all; draw figures if a folder is given.
 
     Args:
         name: the assay's name, which is also that of its function in `figures.assays` and of its files.
         found: the results of each arm, by its path.
         as_json: whether JSON is printed.
         out: folder for figures; each of several arms has a folder in it, with the arm's name.
-        table: a function that makes a table of an arm's results.
+        table: a function that makes one or more tables of an arm's results.
     """
     if as_json:
         plain = {arm: [each.to_dict() for each in of] for arm, of in found.items()}
         click.echo(json.dumps(plain))
     else:
         for arm, of in found.items():
-            show_table(*table(arm, of))
+            told = table(arm, of)
+            for each in told if isinstance(told, list) else [told]:
+                show_table(*each)
     if out is not None:
         from primordia.figures import assays
 

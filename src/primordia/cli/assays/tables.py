@@ -5,6 +5,8 @@ from collections.abc import Sequence
 from statistics import mean
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from primordia.cli.table import spread
 
 
@@ -176,6 +178,96 @@ def compete(name: str, found: list[Any]) -> Told:
     return Told(
         f"{name}: each genome begins in half of the cells, {ticks}, no mutation", head, rows, notes
     )
+
+
+def transplant(name: str, found: list[Any]) -> Told:
+    """Return the table of lives on every island, `assays.transplant`."""
+    islands = found[0].islands
+    born = [f"born on {island}" for island in islands]
+    natives = [f"{sum(each.natives[k] for each in found):,}" for k in range(len(islands))]
+    lives = [
+        (who, count, *(spread(each.lived[row, k] for each in found) for k in range(len(islands))))
+        for row, (who, count) in enumerate([*zip(born, natives, strict=True), ("founders", "")])
+    ]
+    ratios = {"home / away": "home_away", "local / foreign": "local_foreign"}
+    compared = [
+        (
+            text,
+            "",
+            *(spread(getattr(each, field)[k] for each in found) for k in range(len(islands))),
+        )
+        for text, field in ratios.items()
+    ]
+    return Told(
+        f"{name}: mean ticks lived; {_worlds(found)}",
+        ("", "organisms", *(f"living on {island}" for island in islands)),
+        [*lives, *compared],
+        (
+            "Home / away: the life of an island's natives at home, as a multiple of their life on other"
+            " islands.",
+            "Local / foreign: the life of an island's natives at home, as a multiple of the life there"
+            " of other islands' natives.",
+            "Above 1 on every island, local / foreign shows local adaptation (Kawecki & Ebert 2004)."
+            " Home / away alone does not: home may be an easy place.",
+        ),
+    )
+
+
+def generalists(name: str, found: list[Any]) -> list[Told]:
+    """Return the tables of generalists and of the gains of islands, `assays.generalists`."""
+    islands, lived = found[0].islands, [np.median(each.lived, axis=0) for each in found]
+    shares = [
+        (f"masters {_count(count, 'island')}", spread(each.shares[count] for each in found))
+        for count in range(len(islands) + 1)
+    ]
+    of_islands = [
+        (island, spread(own[k] for own in lived), spread(each.best_founder[k] for each in found))
+        for k, island in enumerate(islands)
+    ]
+    several = f"{len(found[0].organism)} late organisms of each world"
+    return [
+        Told(f"{name}: {several}; {_worlds(found)}", ("", "share of organisms"), shares),
+        Told(
+            "Ticks lived on each island",
+            ("", "median organism", "best founder"),
+            of_islands,
+            (
+                "An organism masters an island if it lives there longer than the best of as many"
+                " founders.",
+            ),
+        ),
+        _gains(found),
+    ]
+
+
+def _gains(found: list[Any]) -> Told:
+    """Return the births since which the line of a world's most general organism masters an island."""
+    rows: list[Sequence[str]] = []
+    for each in found:
+        for gained, island in each.gains:
+            k, at = each.islands.index(island), each.line.index(gained)
+            before = f"{each.line[at - 1].lived[k]:,.0f}" if at else "-"
+            who = f"{gained.organism:,}", f"{gained.generation:,}", f"{gained.born:,}"
+            birth = gained.island, gained.birth_cause
+            rows.append(
+                (f"{each.world}: {island}", *who, *birth, before, f"{gained.lived[k]:,.0f}")
+            )
+    return Told(
+        "Births since which the line of the most general organism masters an island",
+        (
+            *("world: island", "organism", "generation", "tick", "born on", "birth"),
+            *("lived there before", "and since"),
+        ),
+        rows or [["none", *[""] * 7]],
+        (
+            "Lived before: the ticks that the ancestor before lives on the island. Only some ancestors"
+            " of a long line live again; see --most.",
+        ),
+    )
+
+
+def _worlds(found: list[Any]) -> str:
+    return f"medians over {len(found)} worlds (quartiles)" if len(found) > 1 else "1 world"
 
 
 def _birth_text(step: Any) -> str:

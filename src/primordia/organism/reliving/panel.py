@@ -10,6 +10,7 @@ import numpy as np
 from PIL import Image, ImageColor, ImageDraw
 
 from primordia.compiled import shared
+from primordia.habitats.archipelago import each_in
 from primordia.habitats.changing import changes_at, is_changing
 from primordia.habitats.contract import AnyHabitat
 from primordia.habitats.framed import PAPER, font
@@ -42,8 +43,8 @@ AHEAD, PLAIN, BLANK = "#d3c1e6", "#b3aea4", "#efece5"
 
 
 def colours(law: Law, habitat: AnyHabitat) -> list[np.ndarray]:
-    """Return strips of the colours of panels, uint8 (1, K, 3) each; none without panels."""
-    if not is_shown(law, habitat):
+    """Return strips of the colours of panels, uint8 (1, K, 3) each; none if no island has panels."""
+    if not any(is_shown(law, each) for each in each_in(habitat)):
         return []
     own = [ImageColor.getrgb(each) for each in (CHANGED, AHEAD, PLAIN, BLANK, INK)]
     return [tints(np.linspace(-1, 1, SHADES))[None], np.array([own], np.uint8)]

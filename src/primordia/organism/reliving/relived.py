@@ -120,6 +120,11 @@ class RelivedLife:
         return int(self.record.world[0])
 
     @property
+    def island(self) -> str:
+        """The name of the island on which the organism lives; "" without islands."""
+        return self.config.islands.names[int(self.config.islands.of_cells(self.record.cell[0]))]
+
+    @property
     def begins(self) -> int:
         """The tick after which the relived life begins: the tick of the birth or of the stored state."""
         if self.stored is None:

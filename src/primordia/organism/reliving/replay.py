@@ -11,6 +11,7 @@ from PIL import Image, ImageDraw
 
 from primordia import files
 from primordia.errors import InputError
+from primordia.habitats.archipelago import each_in
 from primordia.habitats.contract import Ability, AnyHabitat
 from primordia.habitats.framed import PAPER, font
 from primordia.law.metabolism import ONE
@@ -101,20 +102,28 @@ def film(path: Path, *shown: tuple[RelivedLife, list[range]]) -> None:
         for life, parts in shown
     ]
     pictures = _side_by_side(films)
-    first, strips = next(pictures), panel.colours(shown[0][0].law, shown[0][0].habitat)
+    first, of_panels = next(pictures), (panel.colours(each.law, each.habitat) for each, _ in shown)
+    strips = next(filter(None, of_panels), [])  # those of all lives are equal
     sample = video.sample_of(first, *strips) if strips else None
     video.write(path, chain([first], pictures), rate / step, sample)
 
 
 def lacking(habitat: AnyHabitat) -> list[str]:
-    """Return the methods and properties that a habitat lacks for videos of its lives."""
-    return [*habitat.lacks(Ability.PICTURE), *([] if habitat.rate else ["rate"])]
+    """Return the methods and properties that a habitat lacks for videos of its lives.
+
+    Of islands, they are those of the island that lacks fewest: its lives can be shown if there are none.
+    """
+    each_lacks = (
+        [*each.lacks(Ability.PICTURE), *([] if each.rate else ["rate"])]
+        for each in each_in(habitat)
+    )
+    return min(each_lacks, key=len)
 
 
 def picture_rate(life: RelivedLife) -> float:
     """Return the ticks in a second of a life; raise InputError if the habitat draws no pictures."""
     if lacks := " and no ".join(f"`{name}`" for name in lacking(life.habitat)):
-        raise InputError(f"{life.run.path}: the habitat draws no pictures, since it has no {lacks}")
+        raise InputError(f"{_place(life)}: the habitat draws no pictures, since it has no {lacks}")
     assert life.habitat.rate
     return life.habitat.rate
 
@@ -125,10 +134,15 @@ def _common_rate(lives: list[RelivedLife]) -> float:
     for life in lives:
         if (own := picture_rate(life)) != rate:
             raise InputError(
-                f"{life.run.path}: a second has {own:g} ticks, and {rate:g} in {lives[0].run.path}, so"
+                f"{_place(life)}: a second has {own:g} ticks, and {rate:g} in {_place(lives[0])}, so"
                 " their lives cannot be shown side by side"
             )
     return rate
+
+
+def _place(life: RelivedLife) -> str:
+    """Return the run of a life, and its island if there are islands."""
+    return f"{life.run.path}" + (f", island {life.island}" if life.island else "")
 
 
 def parts_of(
@@ -226,6 +240,7 @@ def picture_of(life: RelivedLife, stretch: Stretch, i: int, run: str = "") -> Im
     words = [
         *([run] if run else []),
         f"organism {life.record.id[0]}",
+        *([f"on {life.island}"] if life.island else []),
         f"age {tick - life.record.born[0]:,}",
     ]
     if life.law.metabolism is not None:

@@ -24,7 +24,7 @@ async function filmSection(world, palette, chosen, show) {
   chosen.listen(paint);
   painters.add(paint);
   paint();
-  return section("The world as a film", about, element("div", { class: "film" }, canvas,
+  return section("The world as a film", about, element("div", { class: "film" }, element("div", { class: "picture" }, canvas, islandBands(world)),
     element("div", { class: "bar" }, button, slider), readout));
 }
 

@@ -41,6 +41,7 @@ function paintFigure({ world, palette, chosen, canvas, view }) {
   drawMarks(context, box, world, view);
   if (chosen.organism >= 0) drawDescent(context, box, world, view, chosen.organism);
   drawAxes(context, box, world, view);
+  drawIslands(context, box, world, view);
   canvas.classList.toggle("zoomed", !isWhole(world, view));
 }
 
@@ -61,7 +62,7 @@ function tell(figure, event) {
   const at = under(figure, event);
   if (!at) return void (readout.textContent = "\u00a0");
   const tick = tickAt(world, at.place);
-  const where = `cell ${whole(at.column * world.step)}, birth ${whole(at.place + 1)}, tick ${whole(tick)}: `;
+  const where = `cell ${whole(at.column * world.step)}${onIsland(world, at.column * world.step)}, birth ${whole(at.place + 1)}, tick ${whole(tick)}: `;
   if (at.segment < 0) return void (readout.textContent = `${where}empty`);
   const organism = world.segments.organism[at.segment];
   const age = tick - (world.facts.born[organism] + world.facts.first);

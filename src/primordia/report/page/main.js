@@ -17,6 +17,7 @@ async function render(content) {
         element("div", {}, element("dt", {}, name), element("dd", {}, value))))),
     ...(content.arms ? armsSection(content.arms) : []),
     worlds.element,
+    ...(content.islands ? [islandsSection(content.islands)] : []),
     ...(content.panels.length ? [curvesSection(content.panels)] : []),
     ...(content.films ? [livesSection(content.films)] : []),
     factsSection(content.facts),

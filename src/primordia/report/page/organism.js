@@ -55,7 +55,7 @@ function card(world, at, show) {
   const life = `${whole(facts.lifespan[at])} ticks${simulated(facts.lifespan[at], world.rate)}`;
   const rows = {
     Born: `tick ${whole(born)}, ${{ founder: "a founder", copy: "an exact copy", mutant: "with mutations" }[facts.origins[facts.origin[at]]]}`,
-    Cell: whole(facts.cell[at]),
+    Cell: whole(facts.cell[at]) + onIsland(world, facts.cell[at]),
     [cause ? "Lived" : "Age"]: life,
     [cause ? "Died" : "State"]: cause ? `tick ${whole(born + facts.lifespan[at])}, ${cause}` : "alive",
     Parent: parentOf(world, at, show),

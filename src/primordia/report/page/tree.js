@@ -4,14 +4,15 @@ function treeSection(world, palette, chosen, show) {
   const { tree } = world;
   const some = tree.shown < tree.living ? `; ${whole(tree.shown)} of the living are shown, spread over the cells` : "";
   const about = `The ${whole(tree.living)} living organisms, and the ancestors at which their lines part${some}.`
-    + " Time runs to the right, in births; strong lines last to the present.";
+    + " Time runs to the right, in births"
+    + (islandsOf(world).length ? "; the colour shows the island on which an organism lives." : "; strong lines last to the present.");
   const drawing = element("div", { class: "tree", tabindex: 0, role: "group", "aria-label":
     "Phylogeny of the living. Keys: up and down choose a living organism, Enter shows this organism in the space-time picture." });
   const readout = element("p", { class: "readout", "aria-live": "polite" }, "\u00a0");
   const state = { at: -1 };
   const tellNode = (at) => {
     state.at = at;
-    readout.textContent = at < 0 ? "\u00a0" : nodeText(tree.nodes, at);
+    readout.textContent = at < 0 ? "\u00a0" : nodeText(tree.nodes, at, islandsOf(world));
     markLine(drawing, tree.nodes, at);
   };
   const showNode = (at) => {
@@ -26,7 +27,7 @@ function treeSection(world, palette, chosen, show) {
   onWidth(drawing, draw);
   painters.add(draw);
   treeKeys(drawing, tree.nodes, state, tellNode, showNode);
-  return section("Phylogeny of the living", about, drawing, readout,
+  return section("Phylogeny of the living", about, ...(world.islands ? [islandsKey(world.islands)] : []), drawing, readout,
     element("p", { class: "hint" }, "Move over a line to read its organism; click to see the organism in the space-time picture."));
 }
 
@@ -38,11 +39,12 @@ function markLine(drawing, nodes, at) {
   }
 }
 
-function nodeText(nodes, at) {
-  const { number, born, alive, skipped, parent } = nodes[at];
+function nodeText(nodes, at, islands = []) {
+  const { number, born, alive, skipped, parent, island } = nodes[at];
+  const where = islands.length ? `, on ${islands[island].name}` : "";
   const line = parent < 0 ? "no parent on record"
     : `${skipped + 1} generation${skipped ? "s" : ""} from organism ${whole(nodes[parent].number)}`;
-  return `organism ${whole(number)}, born at tick ${whole(born)}, ${alive ? "alive" : "an ancestor"}, ${line}`;
+  return `organism ${whole(number)}, born at tick ${whole(born)}${where}, ${alive ? "alive" : "an ancestor"}, ${line}`;
 }
 
 function treeKeys(drawing, nodes, state, tellNode, showNode) {
@@ -71,15 +73,21 @@ function drawnTree(world, palette, width, tellNode, showNode) {
   nodes.forEach((node, at) => {
     const bar = `M${x(node.start)} ${y(node.level)}H${Math.max(x(node.stop), x(node.start) + 1)}`;
     const rise = node.parent < 0 ? "" : `M${x(node.start)} ${y(nodes[node.parent].level)}V${y(node.level)}`;
-    const colour = node.alive ? css(colours[node.ink]) : variable("--soft");
+    const colour = barColour(world, node, colours);
     const lines = { "data-node": at };
     svg.append(
       shape("path", { ...lines, class: "line", d: rise }),
-      shape("path", { ...lines, class: "bar", d: bar, stroke: colour, "stroke-width": Math.max(Math.min(gap * 0.5, 5), 1.5) }),
+      shape("path", { ...lines, class: "bar", d: bar, stroke: colour, "stroke-opacity": world.islands && !node.alive ? 0.55 : null, "stroke-width": Math.max(Math.min(gap * 0.5, 5), 1.5) }),
       shape("path", { class: "hit", d: bar + rise, "stroke-width": gap, pointerenter: () => tellNode(at),
         click: () => showNode(at) }));
   });
   return svg;
+}
+
+// The colour of an organism's line if it is alive, or of its island.
+function barColour(world, node, colours) {
+  if (world.islands) return curveColour(world.islands[node.island].colour);
+  return node.alive ? css(colours[node.ink]) : variable("--soft");
 }
 
 function timeGrid(world, x, height, width) {

@@ -1,0 +1,181 @@
+"""Worlds with islands in the live view: borders, names, populations, and one organism beside them."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from primordia.engine.engine import Engine
+from primordia.habitats.archipelago import Parts, archipelago, bodies_with
+from primordia.live import companion as companions
+from primordia.live.borders import ruler
+from primordia.live.census import Census
+from primordia.live.companion import Companion
+from primordia.live.forms import Ring, Room, Torus
+from primordia.live.paint import Cells
+from primordia.live.panel import Outlook, numbers
+from primordia.live.words import OF_ISLANDS, pages
+from primordia.settings.islands import Islands
+from tests.engine.test_islands import WHEELS
+from tests.live.drawn import text
+from tests.live.posed import law, look_alive, posed, view
+from tests.toys import Mill, Watch
+from tests.worlds import config
+
+SHORE = Islands(("dune", "marsh"), (0, 3, 8))
+BAYS = Islands(("dune", "marsh", "sea"), (0, 4, 12, 16))
+"""A torus of four columns, with a row, two rows and a row."""
+
+
+def old(count: int) -> Cells:
+    """Return old cells, each of its own line."""
+    return Cells(np.arange(count), np.ones(count))
+
+
+def test_a_row_below_a_ring_names_its_islands() -> None:
+    drawn, _ = Ring(8, SHORE).draw(old(8), [], Room(64, 5))
+    assert text(drawn)[4] == "└ dune " + "─" * 17 + "┴ marsh " + "─" * 32
+    assert len(text(drawn)[4]) == 64
+    plain, _ = Ring(8).draw(old(8), [], Room(64, 5))
+    assert text(plain)[:4] == text(drawn)[:4]
+    assert text([ruler(SHORE, 0, 8, 1)]) == ["└──┴ ma─"], "names are cut"
+
+
+def test_every_skyline_of_a_ring_names_its_part_of_the_islands() -> None:
+    drawn, _ = Ring(8, SHORE).draw(old(8), [], Room(4, 6))
+    assert text(drawn)[2::3] == ["└──┴", "────"]
+    low, _ = Ring(8, SHORE).draw(old(8), [], Room(64, 1))
+    assert len(low) == 1, "there is no room for names"
+
+
+def test_brackets_beside_a_torus_name_its_islands() -> None:
+    form = Torus(4, 4, BAYS)
+    drawn, part = form.draw(old(16), [], Room(24, 8))
+    assert (form.scale(Room(24, 8)), part) == (4, "")
+    assert [row[16:].rstrip() for row in text(drawn)] == [
+        " ┐ dune", " ┘", " ┐ marsh", " │", " │", " ┘", " ┐ sea", " ┘"
+    ]  # fmt: skip
+    narrow = Room(7, 8)
+    assert text(form.draw(old(16), [], narrow)[0]) == text(Torus(4, 4).draw(old(16), [], narrow)[0])
+
+
+def test_the_living_of_each_island_are_counted_in_the_worlds_that_are_shown() -> None:
+    alive = [[1, 1, 0, 1, 0, 0, 0, 0], [0, 0, 1, 1, 1, 1, 0, 1]]
+    world = posed(alive, np.zeros((2, 8), int).tolist(), [5, 5])
+    for alone, counts in ((None, [3, 5]), (0, [2, 1]), (1, [1, 4])):
+        census = Census.of(world, alone, SHORE)
+        assert census.by_island is not None
+        assert census.by_island.tolist() == counts
+        shown = numbers(census, 8, Outlook(None, None), None, SHORE)
+        sizes = [6, 10] if alone is None else [3, 5]
+        assert list(shown.items())[-2:] == [
+            (f"on {name}", f"{count} of {size}")
+            for name, count, size in zip(SHORE.names, counts, sizes, strict=True)
+        ]
+    plain = Census.of(world, islands=Islands(("",), (0, 8)))
+    assert plain.by_island is None
+    assert not any(
+        name.startswith("on ") for name in numbers(plain, 8, Outlook(1.0, 1.0), 1, SHORE)
+    )
+
+
+def test_words_on_islands_are_explained_only_where_there_are_islands() -> None:
+    with_islands, plain = (
+        {row[:18].strip() for row in text(pages(100, 999, islands)[0])} for islands in (True, False)
+    )
+    assert with_islands - plain == {*OF_ISLANDS}
+
+
+def test_a_body_is_found_among_those_of_its_island() -> None:
+    """Two worlds of eight cells: cell 4 of the second is the second cell of its island there."""
+    bodies = Parts((np.arange(6), np.arange(10) + 100), SHORE.sizes)
+    habitat = archipelago([Mill(), Watch()], SHORE)
+    for place, expected in ((0, 0), (2, 2), (3, 100), (7, 104), (8, 3), (12, 106)):
+        own, row = bodies_with(bodies, habitat, place)
+        assert own[row] == expected
+    own, row = bodies_with(np.arange(16), Mill(), 12)
+    assert own[row] == 12
+
+
+@pytest.fixture(params=["jax", "host"])
+def inhabited(request: pytest.FixtureRequest) -> Engine:
+    """Return two worlds with three islands; four fifths of the cells are inhabited."""
+    habitat = WHEELS["habitat"]
+    if request.param == "host":
+        inner = ("mill", "watch", "mill")
+        islands = zip(habitat["islands"], inner, strict=True)
+        mirrors = [
+            {**island, "habitat": {"name": "tests.toys:Mirror", "inner": kind}}
+            for island, kind in islands
+        ]
+        habitat = {"islands": mirrors}
+    made = Engine(config({**WHEELS, "habitat": habitat}))
+    look_alive(made)
+    return made
+
+
+def test_an_organism_of_every_island_is_shown_with_its_body(inhabited: Engine) -> None:
+    shown, of = Companion(), inhabited.law.islands
+    seen = {}
+    for step in range(38):
+        cell = shown.find(inhabited, None, step=min(step, 1))
+        assert cell is not None
+        number = int(of.of_cells(cell % 24))
+        if number not in seen:
+            seen[number] = text(shown.rows(inhabited, None, Room(70, 30)))
+    assert sorted(seen) == [0, 1, 2]
+    for number, rows in seen.items():
+        assert rows[0].endswith(f", on {of.names[number]}")
+        assert any(row.startswith("senses") for row in rows)
+
+
+def test_an_organism_senses_with_its_own_body_on_its_own_island(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Cell 4 of the second world; its body is the second of its island's second world."""
+    given: list[Any] = []
+
+    def shared(function: Any, of: Any) -> Any:
+        def called(*values: Any) -> Any:
+            given.append((of, values))
+            return SimpleNamespace(action=jnp.zeros((1, 2))) if of is made.law else values[0]
+
+        return called
+
+    monkeypatch.setattr(companions, "shared", shared)
+    world = posed([[1] * 8] * 2, np.zeros((2, 8), int).tolist(), [9, 9], seed=[1, 2])
+    rows = np.arange(16.0)
+    organisms = world.organisms._replace(
+        energy=rows, genome={"input": rows[:, None]}, memory=rows[:, None]
+    )
+    bodies = Parts((np.arange(6.0)[:, None], np.arange(10.0)[:, None] + 100), SHORE.sizes)
+    state = SimpleNamespace(world=world._replace(organisms=organisms), bodies=bodies)
+    habitat = archipelago([Mill(), Watch()], SHORE)
+    made: Any = SimpleNamespace(law=law(8, 2, islands=SHORE), state=state, habitat=habitat)
+    senses, memory, body = companions._perceived(made, 12, 1)
+    assert given[0][0] == habitat.habitats[1]
+    assert (senses.tolist(), memory.tolist(), body.body.tolist()) == ([106.0], [12.0], [106.0])
+
+
+@pytest.mark.parametrize("topology", ["ring", "torus4", "well-mixed"])
+def test_the_view_names_islands_and_counts_their_organisms(topology: str) -> None:
+    settings = {**WHEELS, "cells": 24, "seeds": 1, "placement": {"topology": topology}}
+    settings["seasons"] = []
+    if topology != "well-mixed":
+        islands = [
+            {name: value for name, value in island.items() if name != "placement"}
+            for island in WHEELS["habitat"]["islands"]
+        ]
+        settings["habitat"] = {**WHEELS["habitat"], "islands": islands}
+    made = Engine(config(settings))
+    look_alive(made)
+    drawn = view(120, 40)
+    status: Any = SimpleNamespace(engine=made, limits=None, wall_s=1.0)
+    status.config = made.config
+    drawn._status = status
+    shown = "\n".join(text(drawn._world(status, Room(118, 36))))
+    for name in ("mill", "watch", "slow"):
+        assert f" {name}" in shown
+        assert f"on {name}" in shown
