@@ -122,8 +122,14 @@ def evolved(run: Records, world: int | None = None) -> list[Group]:
     lives, champions = run.lives, _champions(run, world)
     alive = np.flatnonzero(~lives.died & np.isin(lives.world, lives.world[champions]))
     most = int(_births(run, lives.world[champions]).max())
-    found = [_recorded(run, "champion", most, champions)]
-    return found + ([_recorded(run, "all alive", 1, alive)] if len(alive) else [])
+    both = lives.take(np.concatenate([champions, alive]))
+    numbers = list(zip(both.id.tolist(), both.world.tolist(), strict=True))
+    players = players_of(run, numbers)  # at once, since they have most of their ancestors in common
+    best, others = slice(0, len(champions)), slice(len(champions), None)
+    found = [Group(run, "champion", most, numbers[best], players.take(best))]
+    if len(alive):
+        found.append(Group(run, "all alive", 1, numbers[others], players.take(others)))
+    return found
 
 
 def unevolved(run: Records, most: int | None = FOUNDERS, world: int | None = None) -> list[Group]:
@@ -161,13 +167,6 @@ def _births(run: Records, worlds: np.ndarray) -> np.ndarray:
     """Return the number of births in each of these worlds since the run began."""
     lives = run.lives
     return np.bincount(lives.world[~lives.inherited], minlength=lives.worlds)[worlds]
-
-
-def _recorded(run: Records, name: str, chosen_from: int, rows: np.ndarray) -> Group:
-    """Return a group of organisms by their rows in the run's lives."""
-    lives = run.lives.take(rows)
-    numbers = list(zip(lives.id.tolist(), lives.world.tolist(), strict=True))
-    return Group(run, name, chosen_from, numbers, players_of(run, numbers))
 
 
 def _founders(run: Records, worlds: np.ndarray, counts: np.ndarray) -> list[Group]:
