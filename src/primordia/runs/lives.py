@@ -118,10 +118,9 @@ class Lives:
         """
         own = ~self.inherited
         ordinal = np.cumsum(own) - 1  # index among the births of all worlds
-        first, count = (np.zeros(self.worlds, np.int64) for _ in range(2))
-        np.add.at(count, self.world[own], 1)
-        first[1:] = np.cumsum(count)[:-1]
-        return own & (ordinal - first[self.world] >= np.floor(after * count)[self.world])
+        count = np.bincount(self.world[own], minlength=self.worlds)
+        first_late = np.cumsum(count) - count + np.floor(after * count).astype(np.int64)
+        return own & (ordinal >= first_late[self.world])
 
     def oldest(self, world: int | None = None, after: float = LATE) -> int:
         """Return the row of the longest late life, in one world or in all worlds; see `late`.
