@@ -82,6 +82,12 @@ class Lives:
         rows = self._rows_of_world(world)
         return self if rows == slice(0, len(self)) else self.take(rows)
 
+    def check_world(self, world: int) -> None:
+        """Raise InputError if nothing has lived in a world of this number."""
+        here = self._rows_of_world(world)
+        if here.start == here.stop:
+            raise InputError(f"there is no world {world}; the worlds are 0 to {self.worlds - 1}")
+
     def by_world(self) -> "list[Lives]":
         """Return the lives of each world."""
         return [self.of_world(world) for world in range(self.worlds)]
@@ -131,9 +137,10 @@ class Lives:
         Raises:
             InputError: there is no such world, or nothing was born since the fork.
         """
-        here = self._rows_of_world(world) if world is not None else slice(0, len(self))
-        if here.start == here.stop:
-            raise InputError(f"there is no world {world}; the worlds are 0 to {self.worlds - 1}")
+        here = slice(0, len(self))
+        if world is not None:
+            self.check_world(world)
+            here = self._rows_of_world(world)
         rows = here.start + np.flatnonzero(self.late(after)[here])
         if not len(rows):
             raise InputError("nothing has been born since the fork; name an organism by its number")
