@@ -162,7 +162,7 @@ def test_the_limit_of_instructions_is_added_to_the_flags_unless_one_is_there(
 ) -> None:
     started: list[bool] = []
     monkeypatch.setenv("XLA_FLAGS", flags)
-    monkeypatch.setattr(device, "backends_are_initialized", lambda: False)
+    monkeypatch.setattr(device, "started", lambda: False)
     monkeypatch.setattr(jax, "devices", lambda: started.append(_is_asynchronous()))
     before = _is_asynchronous()
     try:
@@ -186,7 +186,7 @@ def test_a_faulty_variable_is_an_error_and_the_option_is_restored(
         raise RuntimeError("none")
 
     before = _is_asynchronous()
-    monkeypatch.setattr(device, "backends_are_initialized", lambda: False)
+    monkeypatch.setattr(device, "started", lambda: False)
     monkeypatch.setenv("XLA_FLAGS", "flags.txt")
     with pytest.raises(InputError, match=r"^XLA_FLAGS: flags.txt names a file"):
         device.prepare()
@@ -201,8 +201,19 @@ def test_a_faulty_variable_is_an_error_and_the_option_is_restored(
     assert _is_asynchronous() == before
 
 
+def test_whether_jax_has_started_is_found_without_a_change() -> None:
+    ask = (
+        "import jax; from primordia.device import started;"
+        "devices = jax.config.jax_num_cpu_devices;"
+        "assert not started() and not started();"
+        "jax.devices();"
+        "assert started() and jax.config.jax_num_cpu_devices == devices"
+    )
+    python(ask)
+
+
 def test_jax_that_has_started_is_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(device, "backends_are_initialized", lambda: True)
+    monkeypatch.setattr(device, "started", lambda: True)
     monkeypatch.setenv("XLA_FLAGS", "flags.txt")
     device.prepare()
     assert os.environ["XLA_FLAGS"] == "flags.txt"

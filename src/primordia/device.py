@@ -13,7 +13,6 @@ from pathlib import Path
 
 import jax
 import jax.numpy as jnp
-from jax._src.xla_bridge import backends_are_initialized  # JAX has no public name for it
 
 from primordia import cores
 from primordia.errors import InputError
@@ -36,7 +35,7 @@ def prepare() -> None:
     Raises:
         InputError: XLA_FLAGS names a file, or JAX_PLATFORMS allows no device of this machine.
     """
-    if backends_are_initialized():
+    if started():
         return
     cores.limit_threads()
     flags = os.environ.get("XLA_FLAGS", "").strip()
@@ -60,6 +59,21 @@ def prepare() -> None:
         ) from None
     finally:
         jax.config.update(name, before)
+
+
+def started() -> bool:
+    """Return whether JAX has started: from then on it refuses another number of CPU devices.
+
+    JAX has no public function that tells.
+    """
+    name = "jax_num_cpu_devices"
+    before = getattr(jax.config, name)
+    try:
+        jax.config.update(name, before + 1)
+    except RuntimeError:
+        return True
+    jax.config.update(name, before)
+    return False
 
 
 _CHOSEN: ContextVar[bool] = ContextVar("chosen", default=False)

@@ -151,7 +151,7 @@ class Seats(NamedTuple):
     rows: np.ndarray
     keys: Any = None
 
-    def take(self, rows: np.ndarray) -> "Seats":
+    def take(self, rows: slice | np.ndarray) -> "Seats":
         return Seats(self.rows[rows], None if self.keys is None else self.keys[rows])
 
 
@@ -168,7 +168,7 @@ def invented(monkeypatch: pytest.MonkeyPatch) -> Any:
     third = [(0, 0, False), (2, 3, True), (3, 8, True), (4, 9, True), (48, 0, False)]
     lives = worlds_of(first, [(5, 2, True)], third, until=50)
     lives.inherited[[0, 1, 32, 33]] = True
-    monkeypatch.setattr(controls, "players_of", lambda run, numbers: numbers)
+    monkeypatch.setattr(controls, "players_of", lambda run, numbers: Seats(np.array(numbers)))
 
     def founders_of(
         _: Any, worlds: np.ndarray, counts: np.ndarray, island: str | None = None
@@ -192,12 +192,15 @@ def invented(monkeypatch: pytest.MonkeyPatch) -> Any:
 
 
 def test_champions_and_the_living_are_those_of_worlds_with_births(invented: Any) -> None:
-    champion, alive = evolved(invented)
+    groups: Any = evolved(invented)
+    champion, alive = groups
     assert (champion.name, champion.chosen_from, alive.name, alive.chosen_from) == (
         "champion", 30, "all alive", 1,
     )  # fmt: skip
-    assert champion.numbers == champion.players == [(18, 0), (3, 2)]
-    assert alive.numbers == alive.players == [(30, 0), (31, 0), (0, 2), (4, 2)]
+    assert champion.numbers == [(18, 0), (3, 2)]
+    assert alive.numbers == [(30, 0), (31, 0), (0, 2), (4, 2)]
+    for group in (champion, alive):
+        assert [*map(tuple, group.players.rows.tolist())] == group.numbers
     champion, alive = evolved(invented, 2)
     assert (champion.numbers, champion.chosen_from) == ([(3, 2)], 4)
     assert alive.numbers == [(0, 2), (4, 2)]

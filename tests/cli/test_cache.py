@@ -2,6 +2,7 @@
 
 import os
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -37,7 +38,7 @@ def test_a_command_keeps_its_compiled_code(tmp_path: Path) -> None:
         return {str(file.relative_to(tmp_path / "cache")) for file in files}
 
     assert run("first", JAX_ENABLE_COMPILATION_CACHE="false") == set()
-    kept = run("second")
+    kept = run("second", JAX_PLATFORMS="cpu")
     assert kept
     assert all(file.startswith(f"primordia/compiled/{cache.processor()}/") for file in kept)
     assert run("third") == kept
@@ -73,11 +74,11 @@ def test_without_a_home_folder_nothing_is_kept(monkeypatch: pytest.MonkeyPatch) 
 def test_the_users_own_settings_of_the_cache_stay(
     given: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Without such settings, code that took 0.2 s to compile is kept, up to 1 GiB."""
+    """Without such settings, code that took 0.05 s to compile is kept, up to 1 GiB."""
     folder = tmp_path / "primordia" / "compiled" / cache.processor()
     defaults = {
         "JAX_COMPILATION_CACHE_DIR": str(folder),
-        "JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS": "0.2",
+        "JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS": "0.05",
         "JAX_COMPILATION_CACHE_MAX_SIZE": "1073741824",
     }
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
@@ -88,6 +89,18 @@ def test_the_users_own_settings_of_the_cache_stay(
     cache.keep_compiled_code()
     expected = dict.fromkeys(defaults, "7") if given else defaults
     assert {name: os.environ[name] for name in defaults} == expected
+
+
+def test_the_folder_is_set_before_jax_checks_the_users_variables(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.delenv("JAX_COMPILATION_CACHE_DIR", raising=False)
+    monkeypatch.setenv("JAX_PLATFORMS", "cpu")
+    monkeypatch.setitem(sys.modules, "jax", None)
+    with pytest.raises(ImportError):
+        cache.prepare_jax()
+    assert os.environ["JAX_COMPILATION_CACHE_DIR"].startswith(str(tmp_path))
 
 
 def test_processors_of_other_features_have_other_folders(tmp_path: Path) -> None:

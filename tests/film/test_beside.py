@@ -236,7 +236,7 @@ def test_a_film_is_in_the_folder_of_its_run_under_the_number_of_its_world(
 
 @pytest.mark.parametrize("world", [-1, 2])
 def test_a_missing_world_is_an_error(world: int, film: Callable[..., Any]) -> None:
-    with pytest.raises(InputError, match=f"run has no world {world}; the worlds are 0 to 1"):
+    with pytest.raises(InputError, match=f"there is no world {world}; the worlds are 0 to 1"):
         film(a_run(TWO_WORLDS), world=world)
 
 

@@ -76,7 +76,7 @@ def test_what_cannot_be_filmed_is_one_line_and_leaves_no_folder(
     run = shutil.copytree(poles.path, tmp_path / "run", ignore=shutil.ignore_patterns("videos"))
     before = sorted(tmp_path.rglob("*"))
     for words, line in (
-        (("--world", 3), "has no world 3; the worlds are 0 to 0"),
+        (("--world", 3), "there is no world 3; the worlds are 0 to 0"),
         (("--from", 200, "--to", 100), "not from 200 to 100"),
         (("--organism", 10**6), "no organism"),
         (("--out", tmp_path / "film.avi"), "the file of a video must end with .mp4 or .gif"),

@@ -11,7 +11,7 @@ from primordia.runs.join import join
 from primordia.runs.lives import ALIVE, Lives
 
 ENDS = np.array([50, 30])
-CELLS = 4
+CELLS, COUNT = 4, 5
 BIRTHS: dict[str, list[Any]] = {
     "world": [0, 1, 0, 1, 0],
     "id": [0, 0, 1, 2, 3],
@@ -55,7 +55,9 @@ def changed(columns: dict[str, list[Any]], row: int, **values: Any) -> dict[str,
 
 
 def lives_of(births: dict[str, list[Any]], deaths: dict[str, list[Any]], begins: int = 0) -> Lives:
-    return join([segment(births, BirthCause)], [segment(deaths, Cause)], ENDS.copy(), begins, CELLS)
+    return join(
+        [segment(births, BirthCause)], [segment(deaths, Cause)], COUNT, ENDS.copy(), begins, CELLS
+    )
 
 
 @pytest.mark.parametrize(
@@ -132,6 +134,6 @@ def test_lives_are_on_record_from_birth_or_from_the_fork(begins: int) -> None:
 
 
 def test_without_deaths_all_are_alive() -> None:
-    lives = join([segment(BIRTHS, BirthCause)], [], ENDS.copy(), 0, CELLS)
+    lives = join([segment(BIRTHS, BirthCause)], [], COUNT, ENDS.copy(), 0, CELLS)
     assert not lives.died.any()
     assert lives.ended.tolist() == [50, 50, 50, 30, 30]

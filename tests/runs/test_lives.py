@@ -54,7 +54,8 @@ def end(world: list[bool]) -> int:
 
 def lives_of(worlds: list[list[bool]], cuts: int) -> Lives:
     births, deaths = tables(worlds, cuts)
-    return join(births, deaths, np.array([*map(end, worlds)]), FORK, 7)
+    count = sum(map(len, births))
+    return join(births, deaths, count, np.array([*map(end, worlds)]), FORK, 7)
 
 
 @given(WORLDS, st.integers(1, 3))
@@ -117,4 +118,4 @@ def test_no_organism_dies_twice(cuts: int) -> None:
     size = len(again) // cuts + 1
     segments = [again.slice(at * size, size) for at in range(cuts)]
     with pytest.raises(ValueError, match="an organism dies twice"):
-        join(births, segments, np.array([end([True] * 12)]), 40, 7)
+        join(births, segments, 12, np.array([end([True] * 12)]), 40, 7)

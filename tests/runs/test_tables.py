@@ -193,6 +193,20 @@ def test_a_segment_is_closed_once_it_is_full(run: Path, parts: list[int]) -> Non
     }
 
 
+def test_birth_numbers_and_ticks_are_stored_as_differences(run: Path) -> None:
+    recorder = Recorder(run, 1, SCHEMA)
+    recorder.add("births", births_of([0] * 5))
+    stored = pq.ParquetFile(run / "births" / "000000.parquet").metadata.row_group(0)
+    encodings = {
+        column.path_in_schema: set(column.encodings)
+        for column in map(stored.column, range(stored.num_columns))
+    }
+    for name in ("id", "parent", "tick"):
+        assert "DELTA_BINARY_PACKED" in encodings[name]
+    for name in ("world", "cell", "cause"):
+        assert "RLE_DICTIONARY" in encodings[name]
+
+
 def test_a_resumed_recorder_goes_on_with_the_tail_and_the_next_number(run: Path) -> None:
     rows = births_of([n % 3 for n in range(13)])
     through, first = Recorder(run, 3, SCHEMA), Recorder(None, 3, SCHEMA)

@@ -130,11 +130,17 @@ def evolved(run: Records, world: int | None = None, island: str | None = None) -
     Raises:
         InputError: nothing was born there, or there is no such island.
     """
-    lives, rows, native = run.lives, _champions(run, world, island), born_on(run, island)
-    alive = np.flatnonzero(~lives.died & native & np.isin(lives.world, lives.world[rows]))
-    most = int(_births(run, lives.world[rows], native).max())
-    found = [_recorded(run, "champion", most, rows)]
-    return found + ([_recorded(run, "all alive", 1, alive)] if len(alive) else [])
+    lives, champions, native = run.lives, _champions(run, world, island), born_on(run, island)
+    alive = np.flatnonzero(~lives.died & native & np.isin(lives.world, lives.world[champions]))
+    most = int(_births(run, lives.world[champions], native).max())
+    both = lives.take(np.concatenate([champions, alive]))
+    numbers = list(zip(both.id.tolist(), both.world.tolist(), strict=True))
+    players = players_of(run, numbers)  # at once, since they have most of their ancestors in common
+    best, others = slice(0, len(champions)), slice(len(champions), None)
+    found = [Group(run, "champion", most, numbers[best], players.take(best))]
+    if len(alive):
+        found.append(Group(run, "all alive", 1, numbers[others], players.take(others)))
+    return found
 
 
 def unevolved(
@@ -181,13 +187,6 @@ def _births(run: Records, worlds: np.ndarray, native: np.ndarray) -> np.ndarray:
     """Return the number of births in each of these worlds since the run began, of `native` (L,) alone."""
     lives = run.lives
     return np.bincount(lives.world[~lives.inherited & native], minlength=lives.worlds)[worlds]
-
-
-def _recorded(run: Records, name: str, chosen_from: int, rows: np.ndarray) -> Group:
-    """Return a group of organisms by their rows in the run's lives."""
-    lives = run.lives.take(rows)
-    numbers = list(zip(lives.id.tolist(), lives.world.tolist(), strict=True))
-    return Group(run, name, chosen_from, numbers, players_of(run, numbers))
 
 
 def _founders(

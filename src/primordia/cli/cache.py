@@ -17,13 +17,19 @@ LARGEST = 2**30
 """Largest size of the cache in bytes; the least recently used code is removed first."""
 
 
-def check_variables() -> None:
-    """Import JAX if a variable of JAX is set; call this before JAX's variables are set for a command.
+def prepare_jax() -> None:
+    """Set JAX's variables for a command, and check those that the user has set. Call this before
+    importing JAX.
+
+    JAX reads its variables when it is imported. It takes a while to load, so it is imported here only
+    if the user has set one of its variables.
 
     Raises:
         InputError: JAX refuses the value of a variable.
     """
-    if not any(name.startswith("JAX_") for name in os.environ):
+    given = any(name.startswith("JAX_") for name in os.environ)
+    keep_compiled_code()
+    if not given:
         return
     try:
         import jax  # noqa: F401
@@ -32,8 +38,7 @@ def check_variables() -> None:
 
 
 def keep_compiled_code() -> None:
-    """Set JAX's folder for compiled code, unless the environment sets it. Call this before
-    importing JAX.
+    """Set JAX's folder for compiled code, unless the environment sets it.
 
     Each kind of processor has a separate folder. Machines may share a home folder, and code that
     was compiled for one machine may crash on another.
@@ -46,7 +51,7 @@ def keep_compiled_code() -> None:
     # A full disk only slows the start of the next run, so no warning is shown.
     warnings.filterwarnings("ignore", message="Error (reading|writing) persistent compilation")
     os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(folder))
-    os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "0.2")
+    os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "0.05")
     os.environ.setdefault("JAX_COMPILATION_CACHE_MAX_SIZE", str(LARGEST))
 
 

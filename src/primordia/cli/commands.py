@@ -25,7 +25,7 @@ from primordia.cli import (
     track,
 )
 from primordia.cli.assays import group as assays
-from primordia.cli.cache import check_variables, keep_compiled_code
+from primordia.cli.cache import prepare_jax
 from primordia.cli.streams import flush, report
 from primordia.errors import InputError, Trouble
 
@@ -93,8 +93,7 @@ def _outcome() -> int:
     try:
         with interrupts.giving_way():
             logging.getLogger("matplotlib").setLevel(logging.ERROR)  # hints on its own folders
-            check_variables()
-            keep_compiled_code()
+            prepare_jax()
             return commands(standalone_mode=False) or 0
     except SystemExit as end:
         if end.code != 1:  # click's status if the reader of a pipe has gone

@@ -47,14 +47,10 @@ def plot(
             is no such figure.
         Trouble: a figure cannot be written.
     """
-    if not 0 <= world < run.config.seeds:
-        raise InputError(
-            f"{run.path} has no world {world}; the worlds are 0 to {run.config.seeds - 1}"
-        )
+    run.lives.check_world(world)
     if out is None:
         bundle.refuse_changes(run.path)
     drawing = {_file(name): find(name) for name in figures or KNOWN}
-    assert len(run.lives)
     if out is None:
         files.own_folder(folder := run.path / "figures")
     else:

@@ -28,16 +28,16 @@ def draw(run: Records, world: int) -> Figure:
     figure = Figure(figsize=(style.PAGE, 2.4))
     living, fates, rates = figure.subplots(1, 3)
     causes = [cause for cause in Cause if (lives.cause == cause).any()]
-    _living(living, lives, cells)
-    _fates(fates, lives, causes)
+    ticks = series.moments(int(lives.ended.max()))
+    _living(living, lives, ticks, cells)
+    _fates(fates, lives, ticks, causes)
     _rates(rates, lives, causes)
     for axes in (living, fates, rates):
         style.time_axis(axes, int(lives.ended.max()), style.time_label(lives))
     return figure
 
 
-def _living(axes: Axes, lives: Lives, cells: int) -> None:
-    ticks = series.moments(int(lives.ended.max()))
+def _living(axes: Axes, lives: Lives, ticks: np.ndarray, cells: int) -> None:
     axes.axhline(cells, color=style.FAINT, linewidth=0.8, zorder=0)
     axes.annotate(
         f"all {cells:,} cells", (0.02, cells), (0, 2), color=style.SOFT,
@@ -51,9 +51,8 @@ def _living(axes: Axes, lives: Lives, cells: int) -> None:
     axes.set(ylabel="organisms", ylim=(0, 1.12 * cells))
 
 
-def _fates(axes: Axes, lives: Lives, causes: list[Cause]) -> None:
+def _fates(axes: Axes, lives: Lives, ticks: np.ndarray, causes: list[Cause]) -> None:
     """Draw the fates of organisms in all worlds together; the counts of a stopped world stay constant."""
-    ticks = series.moments(int(lives.ended.max()))
     born = series.count_until(np.sort(lives.born), ticks)
     dead = [
         series.count_until(np.sort(lives.ended[lives.cause == cause]), ticks) for cause in causes

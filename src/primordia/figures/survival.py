@@ -45,6 +45,14 @@ def quarters(lives: Lives) -> list[Lives]:
     return [lives.take(quarter == number) for number in range(len(COHORTS))]
 
 
+def alive_at(cohort: Lives, longest: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return ages up to the longest, and the share alive after each (Kaplan-Meier), all worlds
+    together."""
+    pooled = replace(cohort, world=np.zeros_like(cohort.world))
+    survived = survival(pooled, 1, longest)
+    return survived.steps, survived.with_ends(survived.curve)
+
+
 def hazard(start: np.ndarray, stop: np.ndarray, died: np.ndarray, edges: np.ndarray) -> np.ndarray:
     """Return deaths per tick lived in each bin of age or time, float64; NaN for bins with too few
     deaths."""
@@ -56,10 +64,7 @@ def _alive(axes: Axes, lives: Lives) -> None:
     cohorts = quarters(lives)
     for cohort, colour in zip(cohorts, COHORTS.values(), strict=True):
         if len(cohort):
-            pooled = replace(cohort, world=np.zeros_like(cohort.world))
-            survived = survival(pooled, 1, longest)
-            alive = survived.with_ends(survived.curve)
-            axes.step(survived.steps, alive, where="post", color=colour)
+            axes.step(*alive_at(cohort, longest), where="post", color=colour)
     style.time_axis(axes, longest, "age (ticks)")
     style.title(axes, "Alive at each age", style.pooled_key(lives.worlds))
     axes.set(ylabel="fraction alive", ylim=(0, 1.02))

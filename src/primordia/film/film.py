@@ -8,7 +8,6 @@ import numpy as np
 from PIL import Image
 
 from primordia import files
-from primordia.errors import InputError
 from primordia.film import beside
 from primordia.film.beside import Beside
 from primordia.film.colours import colours
@@ -57,10 +56,7 @@ def film(
         bundle.refuse_changes(run.path)
     path = out or run.path / "videos" / f"world{world}.mp4"
     video.check_name(path)
-    if not 0 <= world < run.config.seeds:
-        raise InputError(
-            f"{run.path} has no world {world}; the worlds are 0 to {run.config.seeds - 1}"
-        )
+    run.lives.check_world(world)
     lives = run.lives.of_world(world)
     shown = moments(lives, run.config.begins, by, ticks)
     lived = _beside(run, lives, shown, organism)

@@ -90,7 +90,8 @@ def _measured(world: int, found: Families) -> Threshold:
         return Threshold(world, None, None, None)
     good = found.worth[found.parent] >= np.quantile(found.worth[found.born], BEST)
     mutants, copies = good & found.mutant, good & ~found.mutant
-    of_mutants, of_same = (_share_as_long(found, which) for which in (mutants, copies))
+    as_long, known = found.as_long()
+    of_mutants, of_same = (_share(as_long[known & which]) for which in (mutants, copies))
     of_copies, of_all = (_per_death(found, rows) for rows in (found.child[copies], found.born))
     return Threshold(
         world,
@@ -100,10 +101,9 @@ def _measured(world: int, found: Families) -> Threshold:
     )
 
 
-def _share_as_long(found: Families, which: np.ndarray) -> float | None:
-    as_long, known = found.as_long()
-    count = int((known & which).sum())
-    return int((as_long & which).sum()) / count if count >= LEAST else None
+def _share(as_long: np.ndarray) -> float | None:
+    """Return the share of True values; None if there are too few values."""
+    return float(as_long.mean()) if len(as_long) >= LEAST else None
 
 
 def _per_death(found: Families, rows: np.ndarray) -> float | None:

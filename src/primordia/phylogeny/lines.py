@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from primordia.errors import InputError
 from primordia.history.islands import migrants, names_of
 from primordia.phylogeny import coalescence, slopes
 from primordia.phylogeny.coalescence import Genealogy, Times
@@ -154,11 +153,10 @@ def lines(run: Records, world: int | None = None, at: int | None = None) -> list
     Raises:
         InputError: there is no such world, or nothing is alive after the tick.
     """
-    count = run.lives.worlds
-    if world is not None and not 0 <= world < count:
-        raise InputError(f"there is no world {world}; the worlds are 0 to {count - 1}")
+    if world is not None:
+        run.lives.check_world(world)
     seeds, islands = run.world_seeds.tolist(), run.config.islands
-    worlds: Sequence[int] = range(count) if world is None else [world]
+    worlds: Sequence[int] = range(run.lives.worlds) if world is None else [world]
     return [
         lines_of_world(each, run.lives.of_world(each), at, seeds[each], islands) for each in worlds
     ]

@@ -5,12 +5,11 @@ from typing import Any, Literal
 
 import numpy as np
 
-from primordia.comparison.survival import survival
 from primordia.engine.tallies import tally_columns
 from primordia.figures import style
 from primordia.figures.ages import quartiles
 from primordia.figures.population import COLOURS, LIVING, rates
-from primordia.figures.survival import COHORTS, quarters
+from primordia.figures.survival import COHORTS, alive_at, quarters
 from primordia.history import series
 from primordia.history.foraging import foraging
 from primordia.history.investment import investment
@@ -31,12 +30,12 @@ Kind = Literal["line", "faint", "low", "high", "dots", "steps", "limit"]
 def panels(run: Records) -> list[Panel]:
     """Return all panels of a run."""
     lives = run.lives.since_fork()
-    worlds = lives.by_world()
+    worlds, ticks = lives.by_world(), series.moments(int(lives.ended.max()))
     time = style.time_label(lives)
     return [
-        _ages(worlds, time),
+        _ages(worlds, ticks, time),
         _deaths(lives),
-        _living(worlds, run.config.cells, time),
+        _living(worlds, ticks, run.config.cells, time),
         _rates(lives, time),
         _survival(lives),
         *_foraging(run),
@@ -97,8 +96,7 @@ def over_worlds(
     )
 
 
-def _ages(worlds: list[Lives], time: str) -> Panel:
-    ticks = series.moments(max(int(world.ended.max()) for world in worlds))
+def _ages(worlds: list[Lives], ticks: np.ndarray, time: str) -> Panel:
     ages = series.curve_by_world(series.mean_age, worlds, ticks)
     return panel(
         "Mean age of the living", "The mean age of the living over time, in ticks.", time,
@@ -132,8 +130,7 @@ def _deaths(lives: Lives) -> Panel:
     )  # fmt: skip
 
 
-def _living(worlds: list[Lives], cells: int, time: str) -> Panel:
-    ticks = series.moments(max(int(world.ended.max()) for world in worlds))
+def _living(worlds: list[Lives], ticks: np.ndarray, cells: int, time: str) -> Panel:
     living = series.curve_by_world(series.population, worlds, ticks)
     return panel(
         "Organisms alive", "The number of living organisms over time.", time, "organisms",
@@ -163,8 +160,8 @@ def _survival(lives: Lives) -> Panel:
     tables = []
     for cohort, (name, colour) in zip(quarters(lives), COHORTS.items(), strict=True):
         if len(cohort):
-            lived = survival(cohort, cohort.worlds, longest)
-            steps, alive = thinned(lived.steps.clip(1), lived.with_ends(lived.curve))
+            ages, alive = alive_at(cohort, longest)
+            steps, alive = thinned(ages.clip(1), alive)
             tables.append(table(steps, curve(f"{name} of the births", alive, colour, "steps")))
     return panel(
         "Alive at each age", "The share of organisms that reach each age, by quarter of the "

@@ -20,7 +20,7 @@ from primordia.runs.arrays import Arrays
 from primordia.runs.checkpoint import Checkpoint
 from primordia.runs.code import Code
 from primordia.runs.description import Description
-from primordia.runs.join import join
+from primordia.runs.join import BORN, DIED, join
 from primordia.runs.lives import Lives
 from primordia.runs.manifest import Progress
 from primordia.runs.records import Records
@@ -248,10 +248,11 @@ class Archive(Records):
             InputError: nothing has lived in the run yet.
             Trouble: births and deaths contradict each other.
         """
-        births = self.segments("births")
-        deaths = self.segments("deaths", ("world", "id", "tick", "cause"))
+        closed, tail = self.last.manifest.segments["births"], self.state["tail.births"]
+        count = sum(each.rows for each in closed) + len(tail)
+        births, deaths = self.segments("births", tuple(BORN)), self.segments("deaths", DIED)
         try:
-            lives = join(births, deaths, self.ends, self.config.begins, self.config.cells)
+            lives = join(births, deaths, count, self.ends, self.config.begins, self.config.cells)
         except ValueError as error:
             raise Trouble(f"the records of {self.path} contradict themselves: {error}") from None
         if not len(lives):

@@ -8,10 +8,23 @@ import pyarrow as pa
 from primordia.law.world import BirthCause, Cause, Named
 from primordia.runs.lives import ALIVE, Lives, alive_at_fork, find_rows
 
+BORN = {
+    "world": np.int32,
+    "id": np.int64,
+    "parent": np.int64,
+    "tick": np.int64,
+    "cell": np.int32,
+    "cause": np.int8,
+}
+"""Columns of births that lives need, with their types; a parent of -1 is none."""
+DIED = "world", "id", "tick", "cause"
+"""Columns of deaths that lives need."""
+
 
 def join(
     births: Iterable[pa.Table],
     deaths: Iterable[pa.Table],
+    count: int,
     ends: np.ndarray,
     begins: int,
     cells: int,
@@ -19,9 +32,10 @@ def join(
     """Join the births and deaths of a run; each segment is released once it is read.
 
     Args:
-        births: one or more segments, in the order of events; the births of each world are in the
-            order of their numbers.
-        deaths: segments; the columns world, id, tick and cause are enough.
+        births: segments with the columns BORN, in the order of events; the births of each world are
+            in the order of their numbers.
+        deaths: segments with the columns DIED.
+        count: number of births in all segments.
         ends: last tick of each world so far, int64 (W,).
         begins: tick of the fork at whose end the records begin; 0 if the run is no fork.
         cells: number of cells of one world.
@@ -29,13 +43,8 @@ def join(
     Raises:
         ValueError: births and deaths contradict each other; the message says where.
     """
-    born = _concatenated([_columns(segment, BirthCause) for segment in births])
-    _check_worlds(born, ends)
-    if len(ends) > 1:  # sorted by world; NumPy sorts numbers of 16 bits in linear time
-        order = np.argsort(born["world"].astype(np.uint16), kind="stable")
-        born = {name: array[order] for name, array in born.items()}
-    _check_births(born, ends, cells)
-    ended, cause = ends[born["world"]], np.full(len(born["id"]), ALIVE, np.int8)
+    born = _in_order(_born(births, count, ends, cells), worlds=len(ends))
+    ended, cause = ends[born["world"]], np.full(count, ALIVE, np.int8)
     died = 0
     for dead in (_columns(segment, Cause) for segment in deaths):
         _check_worlds(dead, ends)
@@ -53,11 +62,39 @@ def join(
         cell=born["cell"],
         birth_cause=born["cause"],
         born=born["tick"],
-        seen=np.maximum(born["tick"], begins),
+        seen=np.maximum(born["tick"], begins) if begins else born["tick"],
         inherited=alive_at_fork(born["tick"], begins),
         ended=ended,
         cause=cause,
     )
+
+
+def _born(
+    births: Iterable[pa.Table], count: int, ends: np.ndarray, cells: int
+) -> dict[str, np.ndarray]:
+    """Return the columns of all births, in the order of the segments, each checked."""
+    born = {name: np.empty(count, dtype) for name, dtype in BORN.items()}
+    first = 0
+    for segment in births:
+        part = _columns(segment, BirthCause)
+        _check_worlds(part, ends)
+        _check_births(part, ends, cells)
+        for name, column in part.items():
+            born[name][first : first + len(column)] = column
+        first += len(segment)
+    return born
+
+
+def _in_order(born: dict[str, np.ndarray], worlds: int) -> dict[str, np.ndarray]:
+    """Return births sorted by world; raise ValueError unless those of a world are in order of birth."""
+    if worlds > 1:  # NumPy sorts numbers of 16 bits in linear time
+        order = np.argsort(born["world"].astype(np.uint16), kind="stable")
+        born = {name: array[order] for name, array in born.items()}
+    world, number = born["world"], born["id"]
+    ascending = (number[1:] > number[:-1]) | (world[1:] > world[:-1])
+    if not ascending.all():
+        raise ValueError(f"organism {number[1:][~ascending][0]} is not recorded in order of birth")
+    return born
 
 
 def _check_worlds(events: dict[str, np.ndarray], ends: np.ndarray) -> None:
@@ -66,12 +103,12 @@ def _check_worlds(events: dict[str, np.ndarray], ends: np.ndarray) -> None:
 
 
 def _check_births(born: dict[str, np.ndarray], ends: np.ndarray, cells: int) -> None:
-    world, number = born["world"], born["id"]
+    number = born["id"]
     faults = {
         "lives in a cell that does not exist": (born["cell"] < 0) | (born["cell"] >= cells),
         "has a birth number below 0": number < 0,
         "is born before the first tick, or after the last": (born["tick"] < 0)
-        | (born["tick"] > ends[world]),
+        | (born["tick"] > ends[born["world"]]),
         "is not younger than its parent": born["parent"] >= number,
         "has no parent and is no founder": (born["parent"] < 0)
         & (born["cause"] != BirthCause.FOUNDER),
@@ -79,9 +116,6 @@ def _check_births(born: dict[str, np.ndarray], ends: np.ndarray, cells: int) -> 
     for fault, where in faults.items():
         if where.any():
             raise ValueError(f"organism {number[where.argmax()]} {fault}")
-    ascending = (number[1:] > number[:-1]) | (world[1:] > world[:-1])
-    if not ascending.all():
-        raise ValueError(f"organism {number[1:][~ascending][0]} is not recorded in order of birth")
 
 
 def _check_deaths(
@@ -113,8 +147,3 @@ def _columns(segment: pa.Table, kind: type[Named]) -> dict[str, np.ndarray]:
         raise ValueError(f"{min(set(words) - set(codes), key=str)!r} is not a cause")
     code_of_word = np.array([codes[word] for word in words], np.int8)
     return {**arrays, "cause": code_of_word[causes.indices.to_numpy()]}
-
-
-def _concatenated(parts: list[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
-    """Return the joined columns of all parts. The parts are emptied to save memory."""
-    return {name: np.concatenate([part.pop(name) for part in parts]) for name in list(parts[0])}

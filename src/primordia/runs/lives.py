@@ -82,6 +82,12 @@ class Lives:
         rows = self._rows_of_world(world)
         return self if rows == slice(0, len(self)) else self.take(rows)
 
+    def check_world(self, world: int) -> None:
+        """Raise InputError if nothing has lived in a world of this number."""
+        here = self._rows_of_world(world)
+        if here.start == here.stop:
+            raise InputError(f"there is no world {world}; the worlds are 0 to {self.worlds - 1}")
+
     def by_world(self) -> "list[Lives]":
         """Return the lives of each world."""
         return [self.of_world(world) for world in range(self.worlds)]
@@ -118,10 +124,9 @@ class Lives:
         """
         own = ~self.inherited
         ordinal = np.cumsum(own) - 1  # index among the births of all worlds
-        first, count = (np.zeros(self.worlds, np.int64) for _ in range(2))
-        np.add.at(count, self.world[own], 1)
-        first[1:] = np.cumsum(count)[:-1]
-        return own & (ordinal - first[self.world] >= np.floor(after * count)[self.world])
+        count = np.bincount(self.world[own], minlength=self.worlds)
+        first_late = np.cumsum(count) - count + np.floor(after * count).astype(np.int64)
+        return own & (ordinal >= first_late[self.world])
 
     def oldest(
         self, world: int | None = None, after: float = LATE, among: np.ndarray | None = None
@@ -139,9 +144,10 @@ class Lives:
         Raises:
             InputError: there is no such world, or nothing was born since the fork.
         """
-        here = self._rows_of_world(world) if world is not None else slice(0, len(self))
-        if here.start == here.stop:
-            raise InputError(f"there is no world {world}; the worlds are 0 to {self.worlds - 1}")
+        here = slice(0, len(self))
+        if world is not None:
+            self.check_world(world)
+            here = self._rows_of_world(world)
         rows = here.start + np.flatnonzero(self._late_among(among, after)[here])
         if not len(rows):
             when = "since the fork" if among is None else "late on this island"
