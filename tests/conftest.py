@@ -1,5 +1,6 @@
 """Set-up of all tests: JAX, Hypothesis, and a shared cache of compiled code."""
 
+import gc
 import os
 from collections.abc import Iterator
 
@@ -9,6 +10,7 @@ from hypothesis import HealthCheck, settings
 
 from primordia import device
 from primordia.doctor import memo
+from primordia.figures import style
 from primordia.history import pedigree
 from primordia.organism.playing import in_jax
 from tests import commands
@@ -22,6 +24,13 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
                "sharded", "contract", "life", "code", "evaluation"]  # fmt: skip
     places = {f"test_{about}.py": place for place, about in enumerate(longest)}
     items.sort(key=lambda item: places.get(item.path.name, len(places)))
+
+
+def pytest_collection_finish() -> None:
+    """Look for garbage more rarely: the code that JAX keeps is millions of objects, which are looked at
+    each time."""
+    gc.freeze()
+    gc.set_threshold(50_000, 20, 20)
 
 
 # Processes that tests start, and workers that those start, import this tree, whatever is installed.
@@ -66,6 +75,21 @@ def _one_size() -> Iterator[None]:
         for name in ("FEW", "AT_ONCE"):
             patch.setattr(pedigree, name, 32)
         yield
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _rough_figures() -> Iterator[None]:
+    """Save figures with few dots and without a layout that makes room, which take most of the time."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(style.PARAMETERS, "savefig.dpi", 60)
+        patch.setitem(style.PARAMETERS, "figure.constrained_layout.use", False)
+        yield
+
+
+@pytest.fixture
+def _laid_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Make room in figures for all that is drawn, as for a user."""
+    monkeypatch.setitem(style.PARAMETERS, "figure.constrained_layout.use", True)
 
 
 @pytest.fixture
