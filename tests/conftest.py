@@ -3,12 +3,14 @@
 import gc
 import os
 from collections.abc import Iterator
+from functools import lru_cache
+from pathlib import Path
 
 import jax
 import pytest
 from hypothesis import HealthCheck, settings
 
-from primordia import device
+from primordia import compiled, device
 from primordia.doctor import memo
 from primordia.figures import style
 from primordia.history import pedigree
@@ -18,12 +20,19 @@ from tests import commands
 device.prepare()
 
 
+LONGEST = ["runs", "habitats", "engine", "trouble", "organism", "experiments", "report", "law",
+           "assays", "phylogeny"]  # fmt: skip
+"""Folders that take longest; they come first, so none is left to one process at the end."""
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Begin with the files that take longest, so none is left to one process at the end."""
-    longest = ["docs", "exactness", "shipped", "jobs", "goldens", "fork", "resume",
-               "sharded", "contract", "life", "code", "evaluation"]  # fmt: skip
-    places = {f"test_{about}.py": place for place, about in enumerate(longest)}
-    items.sort(key=lambda item: places.get(item.path.name, len(places)))
+    """Group the tests of a folder, which one process runs, since they share worlds and compiled code."""
+    here = Path(__file__).parent
+    places = {name: place for place, name in enumerate(LONGEST)}
+    groups = {item: item.path.relative_to(here).with_suffix("").parts[0] for item in items}
+    items.sort(key=lambda item: places.get(groups[item], len(places)))
+    for item, group in groups.items():
+        item.add_marker(pytest.mark.xdist_group(group))
 
 
 def pytest_collection_finish() -> None:
@@ -74,6 +83,14 @@ def _one_size() -> Iterator[None]:
         patch.setattr(in_jax, "FEWEST", 64)
         for name in ("FEW", "AT_ONCE"):
             patch.setattr(pedigree, name, 32)
+        yield
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _kept_functions() -> Iterator[None]:
+    """Keep the compiled functions of more worlds than a user has in one process."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(compiled, "_kept", lru_cache(maxsize=256)(compiled._jitted))
         yield
 
 

@@ -21,7 +21,6 @@ from tests.history.test_rebuilding import assert_rebuilt
 from tests.strange import PASSING, TICKS
 from tests.worlds import MEADOW, Lived, config
 
-
 LEARNING: dict[str, Any] = {
     **MEADOW,
     "habitat": {"name": "tests.toys:Clocked", "inner": "meadow"},
