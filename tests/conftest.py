@@ -5,6 +5,7 @@ import os
 from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import jax
 import pytest
@@ -48,7 +49,7 @@ os.environ["PYTHONPATH"] = commands.TREE
 # A slow test is not a wrong test: the machine may be busy, and garbage collection takes up to 0.3 s.
 # Each run of the tests generates other examples.
 settings.register_profile(
-    "patient", deadline=None, max_examples=40, suppress_health_check=[HealthCheck.too_slow]
+    "patient", deadline=None, max_examples=25, suppress_health_check=[HealthCheck.too_slow]
 )
 settings.load_profile("patient")
 
@@ -87,26 +88,32 @@ def _one_size() -> Iterator[None]:
 
 
 @pytest.fixture(autouse=True, scope="session")
-def _kept_functions() -> Iterator[None]:
-    """Keep the compiled functions of more worlds than a user has in one process."""
+def kept_by_users() -> Iterator[int]:
+    """Keep more compiled functions than the process of a user does, whose number is returned."""
+    most: int = compiled._kept.cache_parameters()["maxsize"]
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(compiled, "_kept", lru_cache(maxsize=256)(compiled._jitted))
-        yield
+        patch.setattr(compiled, "_kept", lru_cache(4 * most)(compiled._jitted))
+        yield most
 
 
 @pytest.fixture(autouse=True, scope="session")
-def _rough_figures() -> Iterator[None]:
-    """Save figures with few dots and without a layout that makes room, which take most of the time."""
+def _for_users() -> Iterator[dict[str, Any]]:
+    """Save figures with few dots and without a layout that makes room, which take most of the time.
+
+    Yields:
+        the parameters of users.
+    """
+    users = dict(style.PARAMETERS)
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(style.PARAMETERS, "savefig.dpi", 60)
         patch.setitem(style.PARAMETERS, "figure.constrained_layout.use", False)
-        yield
+        yield users
 
 
 @pytest.fixture
-def _laid_out(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Make room in figures for all that is drawn, as for a user."""
-    monkeypatch.setitem(style.PARAMETERS, "figure.constrained_layout.use", True)
+def _laid_out(_for_users: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Draw figures as for a user."""
+    monkeypatch.setattr(style, "PARAMETERS", _for_users)
 
 
 @pytest.fixture
