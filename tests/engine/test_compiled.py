@@ -102,7 +102,8 @@ def test_only_the_code_used_least_recently_is_dropped(
     kept_by_users: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """With one computation more than are kept, the one that was used least recently is dropped."""
-    assert (most := kept_by_users) == compiled.KEPT
+    most = kept_by_users
+    assert most == compiled.KEPT
     monkeypatch.setattr(compiled, "_kept", lru_cache(most)(compiled._jitted))
     things = [Meadow(lifespan=number) for number in range(1, most + 2)]
     codes = [shared(_grown, each) for each in things[:-1]]
