@@ -37,10 +37,10 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def pytest_collection_finish() -> None:
-    """Look for garbage more rarely: the code that JAX keeps is millions of objects, which are looked at
-    each time."""
+    """Look for garbage among young objects only. What JAX keeps of laws is millions of objects, and a
+    look at all of them takes seconds."""
     gc.freeze()
-    gc.set_threshold(50_000, 20, 20)
+    gc.set_threshold(50_000, 20, 1_000)
 
 
 # Processes that tests start, and workers that those start, import this tree, whatever is installed.
