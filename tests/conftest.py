@@ -1,14 +1,19 @@
 """Set-up of all tests: JAX, Hypothesis, and a shared cache of compiled code."""
 
+import gc
 import os
 from collections.abc import Iterator
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
 
 import jax
 import pytest
 from hypothesis import HealthCheck, settings
 
-from primordia import device
+from primordia import compiled, device
 from primordia.doctor import memo
+from primordia.figures import style
 from primordia.history import pedigree
 from primordia.organism.playing import in_jax
 from tests import commands
@@ -16,12 +21,26 @@ from tests import commands
 device.prepare()
 
 
+LONGEST = ["runs", "habitats", "engine", "trouble", "organism", "experiments", "report", "law",
+           "assays", "phylogeny"]  # fmt: skip
+"""Folders that take longest; they come first, so none is left to one process at the end."""
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Begin with the files that take longest, so none is left to one process at the end."""
-    longest = ["docs", "exactness", "shipped", "jobs", "goldens", "fork", "resume",
-               "sharded", "contract", "life", "code", "evaluation"]  # fmt: skip
-    places = {f"test_{about}.py": place for place, about in enumerate(longest)}
-    items.sort(key=lambda item: places.get(item.path.name, len(places)))
+    """Group the tests of a folder, which one process runs, since they share worlds and compiled code."""
+    here = Path(__file__).parent
+    places = {name: place for place, name in enumerate(LONGEST)}
+    groups = {item: item.path.relative_to(here).with_suffix("").parts[0] for item in items}
+    items.sort(key=lambda item: places.get(groups[item], len(places)))
+    for item, group in groups.items():
+        item.add_marker(pytest.mark.xdist_group(group))
+
+
+def pytest_collection_finish() -> None:
+    """Look for garbage among young objects only. What JAX keeps of laws is millions of objects, and a
+    look at all of them takes seconds."""
+    gc.freeze()
+    gc.set_threshold(50_000, 20, 1_000)
 
 
 # Processes that tests start, and workers that those start, import this tree, whatever is installed.
@@ -30,7 +49,7 @@ os.environ["PYTHONPATH"] = commands.TREE
 # A slow test is not a wrong test: the machine may be busy, and garbage collection takes up to 0.3 s.
 # Each run of the tests generates other examples.
 settings.register_profile(
-    "patient", deadline=None, max_examples=40, suppress_health_check=[HealthCheck.too_slow]
+    "patient", deadline=None, max_examples=25, suppress_health_check=[HealthCheck.too_slow]
 )
 settings.load_profile("patient")
 
@@ -66,6 +85,35 @@ def _one_size() -> Iterator[None]:
         for name in ("FEW", "AT_ONCE"):
             patch.setattr(pedigree, name, 32)
         yield
+
+
+@pytest.fixture(autouse=True, scope="session")
+def kept_by_users() -> Iterator[int]:
+    """Keep more compiled functions than the process of a user does, whose number is returned."""
+    most: int = compiled._kept.cache_parameters()["maxsize"]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(compiled, "_kept", lru_cache(4 * most)(compiled._jitted))
+        yield most
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _for_users() -> Iterator[dict[str, Any]]:
+    """Save figures with few dots and without a layout that makes room, which take most of the time.
+
+    Yields:
+        the parameters of users.
+    """
+    users = dict(style.PARAMETERS)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(style.PARAMETERS, "savefig.dpi", 60)
+        patch.setitem(style.PARAMETERS, "figure.constrained_layout.use", False)
+        yield users
+
+
+@pytest.fixture
+def _laid_out(_for_users: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Draw figures as for a user."""
+    monkeypatch.setattr(style, "PARAMETERS", _for_users)
 
 
 @pytest.fixture

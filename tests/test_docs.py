@@ -10,7 +10,6 @@ import sys
 from importlib import import_module
 from pathlib import Path
 
-import duckdb
 import pytest
 
 from primordia.config import load
@@ -83,6 +82,8 @@ def try_out(kind: str, text: str, where: Path) -> None:
         runpy.run_path(str(file), run_name="__main__")
         file.unlink()
     elif kind == "sql":
+        import duckdb  # only here: it takes a second
+
         duckdb.connect().execute(text)
     elif kind == "toml":
         file = where / "block.toml"

@@ -273,7 +273,8 @@ def _files(module: str, root: Path) -> Iterator[tuple[str, Path]]:
                 break
 
 
-def _imports(text: bytes, name: str) -> set[str]:
+@cache
+def _imports(text: bytes, name: str) -> frozenset[str]:
     """Return the names of modules that a file may import; some may be names of functions or classes."""
     package = name.removesuffix(".py").split("/")[:-1]
     imported: set[str] = set()
@@ -282,7 +283,7 @@ def _imports(text: bytes, name: str) -> set[str]:
             warnings.simplefilter("ignore")
             tree = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError):  # the import will report it
-        return imported
+        return frozenset()
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             imported |= {alias.name for alias in node.names}
@@ -291,4 +292,4 @@ def _imports(text: bytes, name: str) -> set[str]:
             base = [*around, *([node.module] if node.module else [])]
             names = (".".join([*base, alias.name]) for alias in node.names)
             imported |= {".".join(base), *names}
-    return imported - {""}
+    return frozenset(imported - {""})

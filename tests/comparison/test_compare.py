@@ -275,6 +275,7 @@ def test_each_run_has_its_own_look(compared: Comparison, arms: int) -> None:
     assert len(drawn.axes[0].collections) == (arms if arms <= FEW_ARMS else 0)
 
 
+@pytest.mark.usefixtures("_laid_out")
 @pytest.mark.parametrize("saturated", [0, WORLDS])
 @pytest.mark.parametrize("fed", [False, True])
 def test_everything_that_is_drawn_is_within_the_page(

@@ -98,12 +98,14 @@ def test_equal_ancestors_share_code_and_others_do_not() -> None:
     assert len({code(genomes), *others}) == 4
 
 
-def test_only_the_code_used_least_recently_is_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_only_the_code_used_least_recently_is_dropped(
+    kept_by_users: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """With one computation more than are kept, the one that was used least recently is dropped."""
-    most = compiled._kept.cache_parameters()["maxsize"]
+    most = kept_by_users
     assert most == compiled.KEPT
     monkeypatch.setattr(compiled, "_kept", lru_cache(most)(compiled._jitted))
-    things = [Meadow(lifespan=number) for number in range(1, compiled.KEPT + 2)]
+    things = [Meadow(lifespan=number) for number in range(1, most + 2)]
     codes = [shared(_grown, each) for each in things[:-1]]
     assert shared(_grown, things[0]) is codes[0]
     shared(_grown, things[-1])

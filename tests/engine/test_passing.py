@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
@@ -13,11 +14,23 @@ from primordia.law.world import Cause
 from primordia.organism.reliving.compare import relive
 from primordia.organism.reliving.course import Course, recorded
 from primordia.organism.reliving.relived import RelivedLife
+from primordia.runs import loop
 from primordia.runs.archive import Archive
-from tests.engine.test_strange import digests, live_in_parts, on_host
+from tests.engine.test_strange import digests, live_in_parts
 from tests.history.test_rebuilding import assert_rebuilt
-from tests.strange import PASSING, SEEDS, TICKS
-from tests.worlds import Lived, config
+from tests.strange import PASSING, TICKS
+from tests.worlds import MEADOW, Lived, config
+
+LEARNING: dict[str, Any] = {
+    **MEADOW,
+    "habitat": {"name": "tests.toys:Clocked", "inner": "meadow"},
+    "brain": {"kind": "plastic", "hidden": 1, "inherited": True},
+    "cells": 60,
+    "genesis": "fill",
+    "replication": 0.5,
+    "hazard": 0.1,
+}
+"""A small world on the host in which children begin with what their parents have learned."""
 
 
 @pytest.fixture(scope="module")
@@ -29,10 +42,17 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def generations(run: Archive) -> np.ndarray:
     """Return the number of ancestors of each organism up to its founder, or to the fork, (L,)."""
-    lives = run.lives
-    return np.array(
-        [len(descent(lives, *of)) - 1 for of in zip(lives.id, lives.world, strict=True)]
-    )
+    lives, found = run.lives, np.zeros(len(run.lives), int)
+    for row in np.argsort(lives.born, kind="stable"):
+        if lives.parent_row[row] >= 0:
+            found[row] = found[lives.parent_row[row]] + 1
+    return found
+
+
+def first_of(generation: np.ndarray, which: np.ndarray) -> int:
+    """Return the row with the fewest ancestors, all of which live again."""
+    (rows,) = which.nonzero()
+    return int(rows[generation[rows].argmin()])
 
 
 def life(run: Archive, row: int) -> RelivedLife:
@@ -40,35 +60,32 @@ def life(run: Archive, row: int) -> RelivedLife:
 
 
 def test_parts_and_chunks_of_any_length_make_the_same_run(run: Path) -> None:
-    whole = Lived(config(PASSING), TICKS, chunk=11)
-    assert digests(run) == whole.digests()
+    """`make slow` also lives each world alone, and both on the host, in `test_strange.py`."""
+    assert digests(run) == Lived(config(PASSING), TICKS, chunk=11).digests()
     assert primordia.load(run).verify() == []
     assert_rebuilt(run)
-    alone = Lived(config(PASSING, seed=SEEDS[1], seeds=1), TICKS)
-    assert alone.digests() == whole.digests()[1:]
 
 
 def test_late_descendants_live_again_as_recorded(run: Path) -> None:
     """They die again in the recorded way, or reach the body, the energy and the memory on record."""
     opened = Archive(run)
-    lives, late = opened.lives, generations(opened) > 3
+    lives, generation = opened.lives, generations(opened)
     parents = lives.parent_row[lives.parent_row >= 0]
     replaced = np.isin(np.arange(len(lives)), parents[lives.cause[parents] == Cause.REPLACED])
     of_replaced = replaced[np.maximum(lives.parent_row, 0)] & (lives.parent_row >= 0)
     chosen = [~lives.died, lives.cause == Cause.STARVED, lives.cause == Cause.FATAL, of_replaced]
     for each in chosen:
-        rows = np.flatnonzero(each & late & (lives.lifespan > 0))
-        assert len(rows)
-        for row in rows[[0, -1]]:
-            found = relive(opened, int(lives.id[row]), int(lives.world[row]))
-            assert found.agrees, found
-            assert found.begin == "birth"
+        row = first_of(generation, each & (generation > 3) & (lives.lifespan > 0))
+        found = relive(opened, int(lives.id[row]), int(lives.world[row]))
+        assert found.agrees, found
+        assert found.begin == "birth"
 
 
 def test_a_life_that_begins_without_the_memory_of_its_parent_differs(run: Path) -> None:
     opened = Archive(run)
     lives = opened.lives
-    (row, *_) = np.flatnonzero(~lives.died & (generations(opened) > 1) & (lives.lifespan > 3))
+    generation = generations(opened)
+    row = first_of(generation, ~lives.died & (generation > 1) & (lives.lifespan > 3))
     right = life(opened, row)
     wrong = replace(right, first=jnp.zeros_like(right.memory))
     assert right.memory.any()
@@ -77,15 +94,21 @@ def test_a_life_that_begins_without_the_memory_of_its_parent_differs(run: Path) 
         assert (course.found()["memory"] == recorded(each)["memory"]) is same
 
 
-def test_a_founder_and_a_child_without_heredity_begin_with_nothing(run: Path) -> None:
+def test_a_founder_begins_with_nothing(run: Path) -> None:
     opened = Archive(run)
     founders = np.flatnonzero(opened.lives.parent < 0)
     assert len(founders)
     assert not life(opened, founders[-1]).memory.any()
-    lonely = Lived(config(PASSING, inheritance="founder", recombination=None), 100)
-    memory = lonely.engine.arrays()["world.organisms.memory"]
-    born = lonely.engine.arrays()["world.organisms.born.lo"]
-    assert not memory[born == 100].any()
+
+
+def test_without_heredity_children_begin_with_nothing() -> None:
+    lonely = Lived(config(LEARNING, inheritance="founder", habitat=MEADOW["habitat"]), 50)
+    arrays = lonely.engine.arrays()
+    memory, born = (arrays[f"world.organisms.{name}"] for name in ("memory", "born.lo"))
+    new = born == 50
+    assert 3 < new.sum() < len(new)
+    assert memory[arrays["world.organisms.alive"] & ~new].any(axis=1).all()
+    assert not memory[new].any()
 
 
 def test_descendants_of_those_alive_at_a_fork_live_again(run: Path, tmp_path: Path) -> None:
@@ -101,15 +124,11 @@ def test_descendants_of_those_alive_at_a_fork_live_again(run: Path, tmp_path: Pa
         assert relive(opened, int(lives.id[row]), int(lives.world[row])).agrees
 
 
-def test_a_habitat_on_the_host_lives_under_the_same_law(run: Path, tmp_path: Path) -> None:
-    host = tmp_path / "host"
-    live_in_parts(on_host(PASSING, "Clocked"), host)
-    a, b = Archive(host).state, Archive(run).state
-    alive = b["world.organisms.alive"]
-    names = [name for name in b if name.startswith("world.organisms")]
-    for name in names:
-        np.testing.assert_array_equal(a[name][alive], b[name][alive], err_msg=name)
-    opened = Archive(host)
-    rows = np.flatnonzero((generations(opened) > 3) & (opened.lives.lifespan > 0))
-    for row in (rows[len(rows) // 2], rows[-1]):
-        assert relive(opened, int(opened.lives.id[row]), int(opened.lives.world[row])).agrees
+def test_descendants_on_the_host_live_again_as_recorded(tmp_path: Path) -> None:
+    loop.start(config(LEARNING, stop={"ticks": 60}), tmp_path / "host")
+    opened = Archive(tmp_path / "host")
+    generation = generations(opened)
+    right = life(opened, first_of(generation, ~opened.lives.died & (generation > 2)))
+    for each, same in ((right, True), (replace(right, first=jnp.zeros_like(right.memory)), False)):
+        list((course := Course(each)).stretches())
+        assert (course.found()["memory"] == recorded(each)["memory"]) is same

@@ -37,15 +37,17 @@ def digests_of(experiment: Campaign) -> dict[str, list[str]]:
 
 @pytest.fixture(scope="module")
 def alone(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[str]]:
-    """Return the digests of each arm's worlds, lived in one run for each arm."""
+    """Return the digests of each arm's worlds, each lived alone. Jobs have two worlds, or one."""
     folder = tmp_path_factory.mktemp("alone")
-    plan = begin(write(folder), folder / "out").plan
-    for arm in plan.arms:
-        loop.start(arm.config, folder / arm.name)
-    return {
-        arm.name: [world["digest"] for world in primordia.load(folder / arm.name).info()["worlds"]]
-        for arm in plan.arms
-    }
+    found: dict[str, list[str]] = {}
+    for arm in begin(write(folder), folder / "out").plan.arms:
+        for world in range(arm.config.seeds):
+            own = {"seed": arm.config.seed + world, "seeds": 1}
+            run = folder / f"{arm.name}-{world}"
+            loop.start(arm.config.model_copy(update=own), run)
+            (told,) = primordia.load(run).info()["worlds"]
+            found.setdefault(arm.name, []).append(told["digest"])
+    return found
 
 
 @pytest.mark.slow

@@ -11,6 +11,7 @@ import tomli_w
 from safetensors import safe_open
 
 import primordia
+from primordia import fitting
 from primordia.comparison.late import last_deaths
 from primordia.config import load
 from primordia.experiments.campaign import begin
@@ -27,6 +28,13 @@ FILES = sorted(EXPERIMENTS.glob("*/*.toml"))
 TRIALS = sorted(EXPERIMENTS.glob("*/founders/*.toml"))
 
 
+@pytest.fixture
+def _untraced(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Skip the check of a habitat's arrays, which takes most of the time: other tests play each task."""
+    monkeypatch.setattr(fitting, "check_arrays", lambda habitat: None)
+
+
+@pytest.mark.usefixtures("_untraced")
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
 def test_settings_of_every_arm_are_valid_and_limits_are_shared(file: Path) -> None:
     plan = read(file, Path("runs", file.stem))
@@ -40,6 +48,7 @@ def test_settings_of_every_arm_are_valid_and_limits_are_shared(file: Path) -> No
     assert len({file.stem for file in FILES}) == len(FILES), "each has a folder of its name"
 
 
+@pytest.mark.usefixtures("_untraced")
 @pytest.mark.parametrize("file", TRIALS, ids=lambda file: file.stem)
 def test_settings_of_trials_are_valid(file: Path) -> None:
     values = tomllib.loads(file.read_text(encoding="utf-8"))

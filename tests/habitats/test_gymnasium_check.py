@@ -7,7 +7,7 @@ import pytest
 
 pytest.importorskip("gymnasium")
 
-from primordia.habitats.gymnasium import state
+from primordia.habitats.gymnasium import check, state
 from primordia.habitats.gymnasium.check import LIVES, measure
 from primordia.habitats.gymnasium.environment import make
 from primordia.habitats.gymnasium.probe import check_food
@@ -27,6 +27,13 @@ FAULTS = {
 }
 
 
+@pytest.fixture
+def _quick(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Live shorter lives; those of ponds end, or show their faults, within 60 ticks."""
+    monkeypatch.setattr(check, "TICKS", 300)
+
+
+@pytest.mark.usefixtures("_quick")
 @pytest.mark.parametrize("name", FAULTS)
 def test_each_fault_is_found(name: str) -> None:
     saving, fresh, says = FAULTS[name]
@@ -35,6 +42,7 @@ def test_each_fault_is_found(name: str) -> None:
     assert any(says in fault for fault in found.faults)
 
 
+@pytest.mark.usefixtures("_quick")
 @pytest.mark.parametrize(
     ("name", "saving", "why"),
     [

@@ -25,11 +25,7 @@ from tests.commands import complains, here
 from tests.synthetic import world_of
 from tests.worlds import MEADOW, MILLS, config
 
-LIVES: dict[str, Any] = {
-    **MILLS,
-    "replication": 0.12,
-    "mutation": {**MILLS["mutation"], "probability": 0.6},
-}
+LIVES: dict[str, Any] = {**MILLS, "replication": 0.12}
 MATES: dict[str, Any] = {**LIVES, "recombination": {"probability": 0.8}}
 
 
@@ -42,7 +38,7 @@ def _few_shadows(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Make a run of two worlds whose organisms mutate more often than not."""
+    """Make a run of two worlds, in which half of all children are mutants."""
     where = tmp_path_factory.mktemp("descent") / "run"
     loop.start(config(LIVES, stop={"ticks": 300}), where)
     return where

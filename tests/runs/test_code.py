@@ -65,24 +65,49 @@ def test_a_run_does_not_go_on_with_changed_code(folder: Path) -> None:
     assert not primordia.load(run).info()["exact"]
 
 
+LOCALE = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+
+
+def hostile(folder: Path) -> None:
+    """Fill a folder with files named as modules that a command imports."""
+    names = "numpy", "click", "jax", "tomllib", "platformdirs", "libtpu", "sitecustomize", "mmap"
+    for name in names:
+        (folder / f"{name}.py").write_text("raise SystemExit('from the current folder')\n")
+
+
+def test_a_command_lives_in_any_folder_and_locale_and_with_closed_streams(tmp_path: Path) -> None:
+    """No file of the folder is imported, nor by a process of simulators, as the pond has one.
+
+    Standard input and the stream of messages are closed, and no file takes their place.
+    """
+    hostile(tmp_path)
+    text = config(SIMULATED, about="é").to_toml().replace('"pond"', '"水\\u001b"')
+    (tmp_path / "pond.toml").write_text(text, encoding="utf-8")
+    words = [*COMMAND, "run", "pond.toml", "--ticks", "1", "--out", "run"]
+    done = subprocess.run(
+        ["sh", "-c", '"$@" <&- 2>&-', "sh", *words],
+        cwd=tmp_path,
+        env={**environment(), **LOCALE, "PRIMORDIA_CORES": "2"},
+        capture_output=True,
+    )
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert done.stdout.decode().startswith("水\\x1b: 1 world")
+    assert "primordia plot run\n" in done.stdout.decode()
+    assert here("info", tmp_path / "run").returncode == 0
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("start", "small"),
     [
-        (COMMAND, ("pond.toml", "--quiet")),
-        pytest.param(COMMAND, ("Pong-survival", "--cells", "2", "--quiet"), marks=pytest.mark.slow),
-        pytest.param(
-            [str(Path(sys.executable).with_name("primordia"))], SMALL, marks=pytest.mark.slow
-        ),
+        (COMMAND, ("Pong-survival", "--cells", "2", "--quiet")),
+        ([str(Path(sys.executable).with_name("primordia"))], SMALL),
     ],
 )
 def test_no_file_of_the_current_folder_takes_the_place_of_an_installed_one(
     tmp_path: Path, start: list[str], small: tuple[str, ...]
 ) -> None:
-    """Nor in a process of simulators, as the pond has one."""
-    (tmp_path / "pond.toml").write_text(config(SIMULATED).to_toml())
-    names = "numpy", "click", "jax", "tomllib", "platformdirs", "libtpu", "sitecustomize", "mmap"
-    for name in names:
-        (tmp_path / f"{name}.py").write_text("raise SystemExit('from the current folder')\n")
+    hostile(tmp_path)
     done = subprocess.run(
         [*start, "run", *small, "--ticks", "1", "--out", "run"],
         cwd=tmp_path,

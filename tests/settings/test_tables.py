@@ -155,3 +155,8 @@ def test_the_first_of_equally_near_names_is_suggested(
     name: str, known: list[str], nearest: str
 ) -> None:
     assert did_you_mean(name, known) == (f"; did you mean {nearest!r}?" if nearest else "")
+
+
+def test_settings_of_tasks_that_a_caller_changes_are_unchanged_for_the_next() -> None:
+    tasks()["CartPole-survival"]["habitat"]["name"] = "mine"
+    assert tasks()["CartPole-survival"]["habitat"]["name"] == "cartpole"

@@ -74,8 +74,7 @@ ODD: list[Any] = [
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Make a folder with a run of closed segments and an open tail, its fork, and a twin."""
     folder = tmp_path_factory.mktemp("forged")
-    lively = {"replication": 0.2, "hazard": 0.05, "metabolism": {"store": 100.0}}
-    settings = config(HERD, **lively, stop={"ticks": 120})
+    settings = config(HERD, replication=0.2, hazard=0.05, stop={"ticks": 120})
     for name in ("run", "twin"):
         loop.start(settings, folder / name)
     done = here("fork", folder / "run", "--at", 50, "--out", folder / "fork", "--quiet")

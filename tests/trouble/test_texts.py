@@ -160,25 +160,6 @@ def test_the_python_interface_refuses_names_that_no_file_can_have(half: Path) ->
 
 # Streams of a process.
 
-LOCALE = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
-
-
-def test_files_and_streams_are_in_utf_8_whatever_the_locale_and_what_is_closed(
-    tmp_path: Path,
-) -> None:
-    """Standard input and the stream of messages are closed, and no file takes their place."""
-    file, run = tmp_path / "mine.toml", tmp_path / "run"
-    text = OWN.replace('"T"', '"水\\u001b"').replace('"A"', '"é"')
-    file.write_text(text, encoding="utf-8")
-    words = [*COMMAND, "run", str(file), "--ticks", "50", "--out", str(run)]
-    shell, variables = ["sh", "-c", '"$@" <&- 2>&-', "sh", *words], environment() | LOCALE
-    done = subprocess.run(shell, env=variables, capture_output=True, check=False)
-    assert (done.returncode, done.stderr) == (0, b"")
-    assert done.stdout.decode().startswith("水\\x1b: 1 world")
-    assert f"primordia plot {run}\n" in done.stdout.decode()
-    assert here("info", run).returncode == 0
-
-
 OPENED = """
 import os, sys
 from primordia.cli import open_streams

@@ -2,6 +2,8 @@
 
 import difflib
 import tomllib
+from copy import deepcopy
+from functools import cache
 from importlib import resources
 from os.path import isfile  # False, and no error, for a name that is too long
 from pathlib import Path
@@ -30,6 +32,12 @@ IMPORTS = "imports"
 
 def tasks() -> dict[str, dict[str, Any]]:
     """Return the settings of the tasks that come with the package, by name of the task."""
+    return deepcopy(_shipped())
+
+
+@cache
+def _shipped() -> dict[str, dict[str, Any]]:
+    """Read the files of tasks, once in a process."""
     values_by_task = {}
     for file in sorted(resources.files("primordia.tasks").iterdir(), key=lambda f: f.name):
         if file.name.endswith(".toml"):
