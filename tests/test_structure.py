@@ -17,7 +17,7 @@ LAYERS = [
     {"brains", "pool"},
     {"habitats", "mutations"},
     {"law"},
-    {"fitting"},
+    {"by_island", "fitting"},
     {"config"},
     {"engine"},
     {"runs"},
