@@ -67,10 +67,10 @@ def standing(name: str, chosen_from: int, *lived: tuple[int, int], score: int = 
     return Standing(name, chosen_from, each)
 
 
-def shown(*groups: Standing) -> tuple[list[str], list[list[str]], list[str]]:
+def shown(*groups: Standing, away: bool = False) -> tuple[list[str], list[list[str]], list[str]]:
     """Return the head, the rows and the notes of the table that is shown."""
     with patch.object(evaluate, "show_table") as table:
-        evaluate.show_standings(list(groups), "the title")
+        evaluate.show_standings(list(groups), "the title", away)
     title, head, rows, notes = table.call_args.args
     assert title == "the title"
     return list(head), [list(row) for row in rows], notes
@@ -102,6 +102,8 @@ def test_notes_are_only_those_that_apply(worlds: int, same: tuple[bool, bool]) -
     text = " ".join(notes)
     assert ("Medians over worlds" in text) == (worlds > 1)
     assert ("All games of an organism are the same" in text) == all(same)
+    *_, notes = shown(Standing("champion", 9, each), away=True)
+    assert "All games" not in " ".join(notes), "champions were chosen in other games"
 
 
 @pytest.mark.parametrize(
@@ -129,4 +131,5 @@ def test_the_title_names_the_changed_rules_of_the_games(
     with patch("primordia.api.load") as load, patch.object(evaluate, "show_standings") as show:
         done = here("evaluate", "RUN", *words)
     assert (done.returncode, done.stderr) == (0, "")
-    show.assert_called_once_with(load.return_value.standings.return_value, says)
+    found = load.return_value.standings.return_value
+    show.assert_called_once_with(found, says, away="--on" in words)

@@ -118,11 +118,9 @@ def evaluate(
     if as_json:
         click.echo(json.dumps({"rows": [each.to_dict() for each in found]}))
     else:
-        show_standings(
-            found,
-            f"{run}{_places(island, on)}: games cut at {ticks:,} ticks{_changed(habitat)}"
-            f"{SENSES[senses]}",
-        )
+        title = f"{run}{_places(island, on)}: games cut at {ticks:,} ticks"
+        title += f"{_changed(habitat)}{SENSES[senses]}"
+        show_standings(found, title, away=on is not None)
 
 
 def _refuse_pairs(
@@ -160,8 +158,11 @@ def evaluation_text(result: "Evaluation", changes: dict[str, Any], where: str = 
     return "\n".join(lines)
 
 
-def show_standings(standings: "list[Standing]", title: str) -> None:
-    """Print a row for each group of organisms, and notes on how to read the rows."""
+def show_standings(standings: "list[Standing]", title: str, away: bool = False) -> None:
+    """Print a row for each group of organisms, and notes on how to read the rows.
+
+    `away` says whether they play on another island than the one on which they were chosen.
+    """
     from primordia.assays.controls import OUTCOMES
 
     outcomes = [name for name in OUTCOMES if standings[0].over_worlds(name)]
@@ -174,10 +175,10 @@ def show_standings(standings: "list[Standing]", title: str) -> None:
             (each.name, *numbers, *(spread(each.by_world(name).values()) for name in outcomes))
         )
     head = ("", "organisms", "chosen from", "games each", *outcomes)
-    show_table(title, head, rows, _notes(standings))
+    show_table(title, head, rows, _notes(standings, away))
 
 
-def _notes(standings: "list[Standing]") -> list[str]:
+def _notes(standings: "list[Standing]", away: bool) -> list[str]:
     """Return notes on how to read the rows."""
     worlds = standings[0].to_dict()["worlds"]
     notes = [
@@ -186,7 +187,7 @@ def _notes(standings: "list[Standing]") -> list[str]:
     ]
     if worlds > 1:
         notes.append("Medians over worlds (quartiles) of the median organism of each world.")
-    if all(each.repeats for each in standings[0].evaluations):
+    if not away and all(each.repeats for each in standings[0].evaluations):
         notes.append(
             "All games of an organism are the same, so champions are judged by the very game by which"
             " they were chosen. Games differ if a setting makes them random, such as --sticky 0.25 in"
