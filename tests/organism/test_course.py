@@ -11,6 +11,7 @@ from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
 from primordia.organism.reliving.course import Course, recorded
 from primordia.organism.reliving.instant import Stretch
+from primordia.settings.islands import Islands
 
 PLACE = 6
 """The index of cell 2 of world 1 in arrays of a state. Each world has 4 cells."""
@@ -45,7 +46,8 @@ def life(kind: str = "host", cause: Cause | None = None, **other: Any) -> Any:
     if kind != "host":
         del run.state["bodies.tally"]
     values = {
-        "run": run, "world": 1, "config": SimpleNamespace(cells=4), "begins": 40, "ends": 90,
+        "run": run, "world": 1,
+        "config": SimpleNamespace(cells=4, islands=Islands(("",), (0, 4))), "begins": 40, "ends": 90,
         "record": SimpleNamespace(cell=np.array([2])), "habitat": SimpleNamespace(kind=kind),
         "cause": cause, "at_death": (3 * ONE // 2, 8 * ONE), "death": {"score": 5, "lives": 0, "tick": 9},
     }  # fmt: skip

@@ -16,6 +16,7 @@ from primordia.organism.reliving.course import Course
 from primordia.organism.reliving.instant import Stretch
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs.lives import ALIVE, Lives
+from primordia.settings.islands import Islands
 
 
 def life_of(row: int, stored: Any = None, **run: Any) -> RelivedLife:
@@ -156,7 +157,9 @@ def test_an_organism_older_than_a_fork_begins_with_the_state_of_the_fork(
     monkeypatch.setattr(relived, "rebuild", lambda run, *place: np.float32([*place]))
     lives = SimpleNamespace(
         row=lambda organism, world: {(5, 1): 0}[organism, world],
-        take=lambda rows: SimpleNamespace(born=np.array([born]), id=np.array([5])),
+        take=lambda rows: SimpleNamespace(
+            born=np.array([born]), id=np.array([5]), cell=np.array([3])
+        ),
     )
     layout = SimpleNamespace(split=lambda genome: genome.tolist())
     run: Any = SimpleNamespace(
@@ -189,7 +192,8 @@ def test_a_life_goes_on_with_the_stored_values_of_its_own_cell(
         for number, name in enumerate(names)
     }
     alone: Any = SimpleNamespace(restore=lambda stored: stored)
-    found = life_of(0)._restored(alone, arrays)
+    islands = SimpleNamespace(islands=Islands(("",), (0, 4)))
+    found = replace(life_of(0), config=islands)._restored(alone, arrays)
     energy, eaten = found.vitals
     assert (found.memory.tolist(), energy.tolist(), eaten.tolist()) == ([[6]], [16], [26])
     bodies: Any = found.bodies
