@@ -24,6 +24,7 @@ from matplotlib.figure import Figure
 from primordia.assays.subjects import spaced
 from primordia.assays.transplant import Transplant, transplant
 from primordia.comparison.pairs import sign_test
+from primordia.experiments.results import table
 from primordia.figures import style
 from primordia.history import pedigree
 from primordia.runs.records import Records
@@ -77,10 +78,7 @@ def _lives(each: Transplant) -> Row:
         LOCAL: home.mean() / foreign,
         "founders": each.lived[-1].mean(),
     }
-    by_island = zip(each.islands, home, strict=True)
-    return {k: round(float(v), 3) for k, v in found.items()} | {
-        f"home on {name}": round(float(own), 1) for name, own in by_island
-    }
+    return {name: round(float(value), 3) for name, value in found.items()}
 
 
 def _clines(run: Records, world: int) -> Row:
@@ -107,17 +105,16 @@ def _explained(place: np.ndarray, weights: np.ndarray) -> float:
 
 
 def _signs(rows: pd.DataFrame) -> str:
-    """Return for each arm and block in how many worlds the cline is stronger than its shadow."""
-    lines = []
+    """Return a table: in how many worlds of each arm the cline of a block is stronger than its shadow."""
+    lines: list[list] = []
     blocks = [name.removeprefix(f"{CLINE} ") for name in rows if name.startswith(CLINE)]
     for arm, worlds in rows.groupby("arm", sort=False):
         for block in blocks:
             more = int((worlds[f"{CLINE} {block}"] > worlds[f"{SHADOW} {block}"]).sum())
             p = sign_test(more, len(worlds) - more)
-            lines.append(
-                f"{arm}, {block}: stronger in {more} of {len(worlds)} worlds (p = {p:.2g})."
-            )
-    return "Clines against their shadows. " + " ".join(lines)
+            lines.append([arm, block, len(worlds), more, f"{p:.2g}"])
+    head = ["arm", "block", "worlds", "cline stronger than its shadow", "p (sign test)"]
+    return table(head, lines)
 
 
 def drawn(rows: pd.DataFrame) -> Figure:
