@@ -92,7 +92,7 @@ def kept_by_users() -> Iterator[int]:
     """Keep more compiled functions than the process of a user does, whose number is returned."""
     most: int = compiled._kept.cache_parameters()["maxsize"]
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(compiled, "_kept", lru_cache(4 * most)(compiled._jitted))
+        patch.setattr(compiled, "_kept", lru_cache(2 * most)(compiled._jitted))
         yield most
 
 
