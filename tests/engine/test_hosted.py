@@ -16,6 +16,7 @@ from primordia.law.genesis import body_words
 from primordia.law.world import World
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import Wide, wide
+from primordia.settings.islands import Islands
 
 CELLS, WORDS = 3, 2
 """Cells of each of two worlds, and random words of a body."""
@@ -55,7 +56,10 @@ def chunks(habitat: Notebook) -> Any:
     made: Any = object.__new__(HostedChunks)
     made._habitat = habitat
     made._law = SimpleNamespace(
-        per_cell=lambda each: np.repeat(each, CELLS), cell_numbers=np.tile(np.arange(CELLS), 2)
+        worlds=2,
+        islands=Islands(("",), (0, CELLS)),
+        per_cell=lambda each: np.repeat(each, CELLS),
+        cell_numbers=np.tile(np.arange(CELLS), 2),
     )
     return made
 

@@ -13,6 +13,7 @@ from primordia.law.recombination import Recombination
 from primordia.mutations.contract import Draws
 from primordia.random.keys import Purpose, streams
 from primordia.random.wide import Wide, wide
+from primordia.settings.islands import Islands
 from tests.chance import binomial
 from tests.worlds import MILL, Lived, config
 
@@ -108,7 +109,7 @@ def test_rows_of_blocks_of_equal_height_share_units_and_other_rows_have_their_ow
 )
 def test_neighbours_are_those_of_the_topology(topology: Any, cells: int, near: set[int]) -> None:
     near_of = jax.jit(Placement(topology=topology).near, static_argnums=1)
-    found = np.asarray(near_of(np.int32([0, cells - 1]), cells))
+    found = np.asarray(near_of(np.int32([0, cells - 1]), Islands(("",), (0, cells))))
     assert set(np.flatnonzero(found[0]).tolist()) == near
     assert found[1].sum() == len(near)
     assert not found[1, cells - 1]

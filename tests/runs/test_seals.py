@@ -168,7 +168,7 @@ def test_verify_names_each_world_that_differs_with_its_own_seed(
     recorder = SimpleNamespace(append=heard.append, digests=dict)
     for name, value in (
         ("Engine", lambda _: engine), ("recorder_for", lambda *_: recorder),
-        ("world_ticks", lambda _: ticks), ("digests", lambda _, which, __: ends[which]),
+        ("world_ticks", lambda _: ticks), ("digests", lambda _, which, *__: ends[which]),
     ):  # fmt: skip
         monkeypatch.setattr(verification, name, value)
     monkeypatch.setattr(checkpoint, "origin", lambda *_: None)
@@ -176,7 +176,8 @@ def test_verify_names_each_world_that_differs_with_its_own_seed(
         digests={}, manifest=SimpleNamespace(progress=SimpleNamespace(exact=True))
     )
     run: Any = SimpleNamespace(
-        config=SimpleNamespace(seed=40, seeds=3), newest=(last, []), state="recorded", path=Path("run"),
+        config=SimpleNamespace(seed=40, seeds=3, islands=None),
+        newest=(last, []), state="recorded", path=Path("run"),
         fault_in=None, admit=lambda: None, other_versions=versions,
     )  # fmt: skip
     reasons = "".join(f"; {each}" for each in versions)

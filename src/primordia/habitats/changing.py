@@ -1,6 +1,6 @@
 """Habitats that change within a life: a wrapper around any habitat; see `change`."""
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -100,6 +100,7 @@ class _Changing:
 
     inner: Any
     action: Action
+    parameters: ClassVar = ()  # they change already
 
     def __init__(self, inner: Any, changes: tuple[Kind, ...]) -> None:
         super().__init__(inner, changes)  # type: ignore[call-arg]
