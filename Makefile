@@ -21,7 +21,7 @@ demo: $(VENV)/installed  ## evolve pole balancers, draw and report them, and fil
 	@echo 'Read on    docs/tutorial.md, ten minutes; `source .venv/bin/activate` puts `primordia` on the path'
 
 test: $(VENV)/installed-dev compiled  ## run the tests: about eight minutes on two cores, five the second time
-	$(TESTS) --dist loadgroup --no-loadscope-reorder
+	$(TESTS) --dist loadfile --no-loadscope-reorder
 
 quick: $(VENV)/installed-dev compiled  ## test each promise once, with the tests in tests/quick.txt: a minute on two cores
 	$(TESTS) --dist loadfile --no-loadscope-reorder @tests/quick.txt

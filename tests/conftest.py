@@ -27,13 +27,14 @@ LONGEST = ["runs", "habitats", "engine", "trouble", "organism", "experiments", "
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Group the tests of a folder, which one process runs, since they share worlds and compiled code."""
+    """Begin with the folders that take longest."""
     here = Path(__file__).parent
     places = {name: place for place, name in enumerate(LONGEST)}
-    groups = {item: item.path.relative_to(here).with_suffix("").parts[0] for item in items}
-    items.sort(key=lambda item: places.get(groups[item], len(places)))
-    for item, group in groups.items():
-        item.add_marker(pytest.mark.xdist_group(group))
+
+    def place(item: pytest.Item) -> int:
+        return places.get(item.path.relative_to(here).parts[0], len(places))
+
+    items.sort(key=place)
 
 
 def pytest_collection_finish() -> None:
