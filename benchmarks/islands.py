@@ -1,14 +1,19 @@
-"""An archipelago against its islands alone: seconds for the same ticks of the same cells."""
+"""An archipelago against its islands alone: seconds for the same ticks of the same cells.
+
+A control tells what islands cost from what a larger world costs: equal islands against the plain world of
+all their cells, which live the same lives.
+"""
 
 import statistics
 import sys
 import time
+from itertools import chain
 from typing import Any
 
 from primordia.config import Config, load
 from primordia.engine.engine import Engine
 
-PAIRS = 5
+PAIRS = 7
 WORLDS: dict[str, tuple[str, dict[str, Any], int]] = {
     "8 gravities, 16 cells each": (
         "CartPole-survival",
@@ -58,28 +63,41 @@ WORLDS: dict[str, tuple[str, dict[str, Any], int]] = {
 
 
 def against_islands_alone(names: tuple[str, ...] = tuple(WORLDS)) -> list[dict]:
-    """Return, for each archipelago, its seconds as a multiple of those of its islands alone."""
+    """Return, for each archipelago, its seconds as a multiple of those of its islands alone, and the
+    seconds of equal islands as a multiple of those of a plain world."""
     rows = []
     for name in names:
         task, settings, ticks = WORLDS[name]
         config = load(task, {"genesis": "fill", **settings})
-        whole, alone = Engine(config), [Engine(each) for each in _plain_worlds(config)]
-        _seconds(whole, ticks)  # compiles
-        for each in alone:
-            _seconds(each, ticks)
-        pairs = [
-            (_seconds(whole, ticks), sum(_seconds(each, ticks) for each in alone))
-            for _ in range(PAIRS)
-        ]
-        ratios = [together / apart for together, apart in pairs]
+        alone = _plain_worlds(config)
+        large = alone[0].model_copy(update={"cells": config.cells})
+        equal = [{"name": each} for each in config.islands.names]
+        drawn = large.model_copy(update={"habitat": {**large.habitat, "islands": equal}})
         rows.append({
             "world": name,
-            "seconds_together": statistics.median(pair[0] for pair in pairs),
-            "seconds_apart": statistics.median(pair[1] for pair in pairs),
-            "ratio": statistics.median(ratios),
-            "ratios": [round(each, 3) for each in ratios],
+            **_compared("alone", [config], alone, ticks),
+            **_compared("equal_islands", [drawn], [large], ticks),
         })  # fmt: skip
     return rows
+
+
+def _compared(about: str, one: list[Config], other: list[Config], ticks: int) -> dict[str, Any]:
+    """Return the seconds of some worlds, of others, and the ratios of pairs."""
+    sides = [[Engine(each) for each in side] for side in (one, other)]
+    for engine in chain(*sides):
+        _seconds(engine, ticks)  # compiles
+    pairs = [
+        [sum(_seconds(engine, ticks) for engine in side) for side in sides] for _ in range(PAIRS)
+    ]
+    for engine in chain(*sides):
+        if engine.habitat.kind == "host":
+            engine.habitat.close()
+    ratios = [first / second for first, second in pairs]
+    return {
+        f"seconds_{about}": [statistics.median(side) for side in zip(*pairs, strict=True)],
+        f"ratio_{about}": statistics.median(ratios),
+        f"ratios_{about}": [round(each, 3) for each in ratios],
+    }
 
 
 def _plain_worlds(config: Config) -> list[Config]:

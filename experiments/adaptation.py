@@ -32,12 +32,13 @@ from primordia.runs.records import Records
 EACH, GAMES, TICKS = 20, 3, 5_000
 LATE = 0.5
 HOME, FAR, RATIO = "home", "far end", "home / far end"
-FOREIGN, LOCAL = "foreigners", "local / foreign"
+FOREIGN, LOCAL, ADAPTED = "foreigners", "local / foreign", "adapted islands"
 CLINE, SHADOW = "cline of", "shadow of"
 NOTE = (
     f"Home, far end: ticks that {EACH} late-born natives of each island live there, means over islands"
     f" of at most {TICKS:,} ticks. Foreigners: ticks that natives of all other islands live on an island."
-    " Local / foreign and home / far end are ratios of these means. Cline of a block of weights: share of"
+    " Local / foreign and home / far end are ratios of these means. Adapted islands: those on which"
+    " natives live longer than foreigners. Cline of a block of weights: share of"
     " the variance among natives that a straight line along the islands explains; shadows are neutral."
 )
 
@@ -76,6 +77,7 @@ def _lives(each: Transplant) -> Row:
         RATIO: home.mean() / away,
         FOREIGN: foreign,
         LOCAL: home.mean() / foreign,
+        ADAPTED: (each.local_foreign > 1).sum(),
         "founders": each.lived[-1].mean(),
     }
     return {name: round(float(value), 3) for name, value in found.items()}

@@ -13,7 +13,7 @@ from tests.law.test_placement import ROUNDS, RULES, N, W, words
 
 ISLANDS = Islands(("west", "middle", "east"), (0, 3, 8, N))
 MIGRATION = np.repeat(np.float32([0.25, 0.0, 1.0]), ISLANDS.sizes)
-"""From the middle nobody leaves, and from the east everybody."""
+"""No child of the middle leaves it, and every child of the east leaves."""
 
 
 def placed(rule: str, wants: np.ndarray, occupied: np.ndarray, drawn: np.ndarray) -> np.ndarray:

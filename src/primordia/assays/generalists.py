@@ -1,11 +1,13 @@
 """Generalists: organisms that live long on several islands, and how a line became one.
 
-An organism *masters* an island if it lives there longer than the best of as many founders.
+An organism *masters* an island if it lives there longer than the best of as many founders. The most
+general organism was also lucky in the games in which it was chosen, so its line lives in fresh ones.
 """
 
 from dataclasses import asdict, dataclass
 from typing import Any
 
+import jax.numpy as jnp
 import numpy as np
 
 from primordia.assays.subjects import GAMES, TICKS, spaced
@@ -13,6 +15,8 @@ from primordia.assays.transplant import everywhere, islands_of, plain
 from primordia.history.rebuilding import descent
 from primordia.law.world import BirthCause
 from primordia.organism.playing.players import founders_of, players_of
+from primordia.random.keys import Purpose, stream
+from primordia.random.wide import wide
 from primordia.runs.lives import LATE
 from primordia.runs.records import Records
 
@@ -123,7 +127,8 @@ def generalists(
     for world in np.unique(lives.world[late]).tolist():
         rows = late[lives.world[late] == world]
         rows = spaced(rows[:-1] if len(rows) > 1 else rows, each)
-        lived = _lived(run, rows, world, games, ticks)
+        numbers = [(int(number), world) for number in lives.id[rows]]
+        lived = everywhere(run, players_of(run, numbers), world, games, ticks)
         _, _, fresh = founders_of(run, np.array([world]), np.array([len(rows)]))
         best = everywhere(run, fresh, world, games, ticks).max(axis=0)
         ratio = lived / best
@@ -135,21 +140,22 @@ def generalists(
     return found
 
 
-def _lived(run: Records, rows: np.ndarray, world: int, games: int, ticks: int) -> np.ndarray:
-    numbers = [(int(number), world) for number in run.lives.id[rows]]
-    return everywhere(run, players_of(run, numbers), world, games, ticks)
-
-
 def _line(
     run: Records, row: int, best: np.ndarray, manner: tuple[int, int, int]
 ) -> tuple[Ancestor, ...]:
-    """Return the ancestors of an organism; `manner` holds games, ticks and the number of ancestors."""
+    """Return the ancestors of an organism; `manner` holds games, ticks and the number of ancestors.
+
+    All of them play the same games, other ones than those in which the organism was chosen.
+    """
     games, ticks, most = manner
     world, islands = int(run.lives.world[row]), run.config.islands
     line = descent(run.lives, int(run.lives.id[row]), world)
     places = np.unique(np.linspace(0, len(line) - 1, min(most, len(line))).astype(int))
-    lived = _lived(run, line[places], world, games, ticks)
     chosen = run.lives.take(line[places])
+    players = players_of(run, [(int(number), world) for number in chosen.id])
+    fresh = stream(wide(run.world_seeds[[world]]), Purpose.REBIRTH, wide(run.lives.id[[row]]))
+    keys = fresh.map(lambda word: jnp.repeat(word, len(places), total_repeat_length=len(places)))
+    lived = everywhere(run, players._replace(keys=keys), world, games, ticks)
     return tuple(
         Ancestor(
             generation=int(places[k]),

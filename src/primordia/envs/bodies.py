@@ -9,6 +9,7 @@ from gymnasium import Space, spaces
 from primordia import device
 from primordia.compiled import shared
 from primordia.config import Config
+from primordia.errors import InputError
 from primordia.habitats.contract import Action, Compound, Continuous, Discrete, JaxHabitat
 from primordia.habitats.on_host import OnHost
 from primordia.law import life
@@ -35,6 +36,11 @@ class Bodies:
 
     def __init__(self, config: Config, count: int, watched: bool = False) -> None:
         device.prepare()
+        if config.islands.count > 1:
+            raise InputError(
+                f"{config.task} has islands, and an environment is one habitat; write a task with the"
+                " settings of one island"
+            )
         habitat = config.build_habitat()
         self.law = config.build_law(habitat)
         self.habitat = OnHost(habitat) if isinstance(habitat, JaxHabitat) else habitat

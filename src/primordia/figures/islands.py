@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from primordia.figures import style
 from primordia.history import series
+from primordia.history.islands import migrants
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 from primordia.settings.islands import Islands
@@ -79,7 +80,8 @@ def arrived_shares(lives: Lives, islands: Islands) -> tuple[np.ndarray, np.ndarr
     All worlds count together.
     """
     edges = series.bins(int(lives.ended.max()))
-    home, arrived = islands.of_cells(lives.cell), migrants(lives, islands)
+    home = islands.of_cells(lives.cell)
+    arrived = migrants(lives.parent_row, home)
     child = lives.parent_row >= 0
     shares = np.full((islands.count, len(edges) - 1), np.nan)
     for k in range(islands.count):
@@ -90,12 +92,6 @@ def arrived_shares(lives: Lives, islands: Islands) -> tuple[np.ndarray, np.ndarr
         enough = births >= series.MIN_EVENTS
         shares[k, enough] = arrivals[enough] / births[enough]
     return series.middle(edges), shares
-
-
-def migrants(lives: Lives, islands: Islands) -> np.ndarray:
-    """Return which organisms were born on another island than that of their parent, bool (L,)."""
-    home, parent = islands.of_cells(lives.cell), lives.parent_row
-    return (parent >= 0) & (home[parent] != home)
 
 
 def _lines(axes: Axes, ticks: np.ndarray, values: np.ndarray, colours: dict[str, str]) -> None:

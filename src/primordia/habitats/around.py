@@ -52,10 +52,6 @@ class _Around(Habitat):
     def __hash__(self) -> int:
         return hash(self._key)
 
-    def files_with(self, file: str) -> list[str]:  # type: ignore[override]
-        """Return the full paths of a file and of all files that it needs."""
-        return self.inner.files_with(file)
-
     def lacks(self, ability: Ability) -> list[str]:
         """Return the methods that the inner habitat lacks for an ability."""
         return self.inner.lacks(ability)

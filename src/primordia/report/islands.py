@@ -1,13 +1,13 @@
 """Islands in a page: where they are, a table of who lives on them, and their curves."""
 
-from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from primordia.figures import style
-from primordia.figures.islands import by_island, migrants
+from primordia.figures.islands import by_island
 from primordia.history import series
+from primordia.history.islands import on_islands
 from primordia.report.curves import Panel, over_worlds, panel
 from primordia.runs.records import Records
 from primordia.settings.islands import Islands
@@ -21,34 +21,6 @@ ABOUT = (
     "An island is a part of the world's cells with a habitat and rates of its own. An organism lives"
     " where it was born."
 )
-
-
-class OnIsland(NamedTuple):
-    """The numbers of one island of one world."""
-
-    world: int
-    name: str
-    cells: int
-    living: int
-    births: int
-    immigrants: int
-    """births whose parent lived on another island"""
-    mean_age: float | None
-    """mean age of the living, ticks; None if nothing lives there"""
-
-
-def on_islands(run: Records) -> Iterator[OnIsland]:
-    """Yield the numbers of each island, world by world. Births are those since a fork."""
-    islands = run.config.islands
-    for number, lives in enumerate(run.lives.by_world()):
-        home, alive, own = islands.of_cells(lives.cell), ~lives.died, ~lives.inherited
-        came = own & migrants(lives, islands)
-        for k, (name, size) in enumerate(zip(islands.names, islands.sizes, strict=True)):
-            here = home == k
-            living, ages = int((here & alive).sum()), lives.lifespan[here & alive]
-            births, arrived = int((here & own).sum()), int((here & came).sum())
-            age = float(ages.mean()) if living else None
-            yield OnIsland(number, name, size, living, births, arrived, age)
 
 
 def places(islands: Islands) -> list[dict[str, Any]]:

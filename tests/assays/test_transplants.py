@@ -1,0 +1,93 @@
+"""Organisms of one island on every island: their lives, and what is concluded from these."""
+
+import numpy as np
+import pytest
+
+import primordia
+from primordia.assays import generalists as module
+from primordia.assays.generalists import Ancestor, Generalists, generalists
+from primordia.assays.transplant import Transplant, everywhere, transplant
+from primordia.organism.playing.games import Players, lifespans_in_games
+from primordia.organism.playing.players import evaluation_keys, players_of
+from primordia.random.wide import to_host
+from primordia.runs.records import Records
+
+NAN = float("nan")
+
+
+def test_natives_live_on_each_island_as_in_a_plain_world(isles: primordia.Run) -> None:
+    """With all late natives of an island, the mean is that of their lives in plain worlds like it."""
+    run = isles.opened()
+    lives, islands = run.lives, run.config.islands
+    found = transplant(run, each=10_000, games=2, ticks=120)
+    assert [each.world for each in found] == [0, 1]
+    for each in found:
+        late = run.lives.late(0.5) & (lives.world == each.world)
+        assert each.lived.shape == (3, 2)
+        for home in range(2):
+            rows = np.flatnonzero(late & (islands.of_cells(lives.cell) == home))
+            assert each.natives[home] == len(rows) > 0
+            numbers = [(int(number), each.world) for number in lives.id[rows]]
+            players = players_of(run, numbers)
+            for place, plain in enumerate(run.config.by_island):
+                there = players._replace(habitat=plain.build_habitat(), island=None)
+                alone = lifespans_in_games(there, 2, 120).mean()
+                assert each.lived[home, place] == pytest.approx(alone)
+        assert (each.lived[:, 0] > each.lived[:, 1]).all(), "poles fall soon on heavy"
+
+
+def test_natives_are_compared_with_foreigners_and_with_themselves_elsewhere() -> None:
+    lived = np.array([[40.0, 10.0, 30.0], [20.0, 12.0, 60.0], [NAN, NAN, NAN], [5.0, 6.0, 7.0]])
+    found = Transplant(0, ("a", "b", "c"), (4, 4, 0), lived)
+    np.testing.assert_allclose(found.home_away, [40 / 20, 12 / 40, NAN])
+    np.testing.assert_allclose(found.local_foreign, [40 / 20, 12 / 10, NAN])
+    plain = found.to_dict()
+    assert plain["lived"][2] == [None] * 3
+    assert plain["local_foreign"] == [2.0, 1.2, None]
+
+
+def ancestor(number: int, *mastered: str) -> Ancestor:
+    return Ancestor(number, 10 * number, number, "mutant", "a", (1.0, 1.0), mastered)
+
+
+def test_an_island_is_gained_by_the_ancestor_since_which_the_line_masters_it() -> None:
+    line = (
+        ancestor(0, "b"),
+        ancestor(3, "a"),
+        ancestor(5),
+        ancestor(7, "a", "b"),
+        ancestor(8, "a"),
+    )
+    lived = np.array([[3.0, 1.0], [3.0, 3.0], [1.0, 2.0]])
+    found = Generalists(
+        0, ("a", "b"), np.arange(3), np.zeros(3, int), lived, np.array([2.0, 2.0]), line
+    )
+    assert found.mastered.tolist() == [1, 2, 0]
+    assert found.shares.tolist() == [1 / 3] * 3
+    assert [(each.organism, island) for each, island in found.gains] == [(70, "a")]
+
+
+def test_a_line_does_not_live_in_the_games_in_which_its_organism_was_chosen(
+    isles: primordia.Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    keys = list[np.ndarray]()
+
+    def heard(run: Records, players: Players, *rest: int) -> np.ndarray:
+        keys.append(to_host(players.keys))
+        return everywhere(run, players, *rest)
+
+    monkeypatch.setattr(module, "everywhere", heard)
+    run = isles.opened()
+    (first, second) = generalists(run, each=6, games=1, ticks=60, most=5)
+    chosen, founders, line = keys[:3]
+    assert len(chosen) == len(founders) == 6
+    own = evaluation_keys(run, np.zeros(6, np.int64), first.organism)
+    np.testing.assert_array_equal(chosen, to_host(own))
+    assert len(set(line.tolist())) == 1, "all ancestors play the same games"
+    assert not set(line.tolist()) & {*chosen.tolist(), *founders.tolist()}
+    for each in (first, second):
+        last = each.line[-1]
+        place = each.organism.tolist().index(last.organism)
+        assert each.mastered[place] == each.mastered.max()
+        best = zip(each.islands, last.lived, each.best_founder, strict=True)
+        assert last.mastered == tuple(name for name, own, of in best if own > of)

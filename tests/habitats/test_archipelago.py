@@ -1,0 +1,246 @@
+"""Habitats made of habitats: what islands share, what each does, and which do not fit together."""
+
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from jax import Array
+
+from primordia.compiled import shared
+from primordia.config import load
+from primordia.envs.bodies import Bodies
+from primordia.errors import InputError
+from primordia.habitats.archipelago import Parts, archipelago, at, joined, split
+from primordia.habitats.bodies import not_finite, select_bodies
+from primordia.habitats.cartpole.habitat import CartPole
+from primordia.habitats.contract import Continuous, Discrete, HostHabitat, JaxHabitat, Outcome
+from primordia.habitats.scaled import scaled
+from primordia.settings.islands import Islands
+from tests.habitats.test_parameters import HeldPoles
+from tests.toys import Clocked, Mirror
+from tests.worlds import MEADOW, config
+
+SHORE = Islands(("west", "east"), (0, 2, 5))
+"""Cells 0 and 1, and cells 2 to 4."""
+
+
+class Keys(JaxHabitat):
+    """Bodies that remember which choice their organism made last."""
+
+    senses_size: int
+    action: Any
+    buttons: tuple[str, ...] | None
+    words = 1
+
+    def __init__(self, senses: int, *buttons: str, count: int = 0) -> None:
+        self.senses_size, self.buttons = senses, buttons or None
+        self.action = Discrete(len(buttons) or count)
+
+    def reset(self, words: Array) -> Array:
+        return jnp.full(len(words), -1, jnp.int32)
+
+    def sense(self, bodies: Array) -> Array:
+        return jnp.ones((len(bodies), self.senses_size), jnp.float32) * bodies[:, None]
+
+    def step(self, bodies: Array, action: Array) -> tuple[Array, Outcome]:
+        return action, Outcome(
+            action == 0, None if self.senses_size == 1 else action * jnp.float32(2)
+        )
+
+
+def test_a_button_is_one_choice_on_all_islands_and_nothing_where_it_is_missing() -> None:
+    """The choices are left, noop, right and jump; on the second island jump, left and noop."""
+    both: Any = archipelago(
+        [Keys(1, "left", "noop", "right"), Keys(3, "jump", "left", "noop")], SHORE
+    )
+    assert (both.buttons, both.action) == (("left", "noop", "right", "jump"), Discrete(4))
+    assert (both.senses_size, both.words) == (3, 1)
+    bodies = both.reset(jnp.zeros((5, 1), jnp.uint32))
+    west, east = [0, 1, 2, 1], [1, 2, 2, 0]
+    for button in range(4):
+        after, outcome = both.step(bodies, jnp.full(5, button, jnp.int32))
+        assert [each.tolist() for each in after.island] == [[west[button]] * 2, [east[button]] * 3]
+        own = [west[button]] * 2 + [east[button]] * 3
+        assert outcome.fatal.tolist() == [each == 0 for each in own]
+        assert outcome.food.tolist() == [0.0] * 2 + [2.0 * east[button]] * 3
+        senses = np.asarray(both.sense(after))
+        assert senses[:2, 1:].sum() == 0, "the senses that an island lacks are 0"
+        assert senses[:, 0].tolist() == own
+    assert at(both, 1) is both.habitats[0]
+    assert at(both, 2) is both.habitats[1]
+
+
+def test_parts_are_selected_checked_split_and_joined_island_by_island() -> None:
+    """Two worlds of five cells; rows are counted world by world."""
+    rows = jnp.arange(10.0)
+    west, east = split(rows, SHORE.sizes)
+    assert (west.tolist(), east.tolist()) == ([0, 1, 5, 6], [2, 3, 4, 7, 8, 9])
+    assert joined([west, east], SHORE.sizes).tolist() == rows.tolist()
+    old = Parts((west, east), SHORE.sizes)
+    new = Parts((west + 100, jnp.where(east == 8, jnp.nan, east + 100)), SHORE.sizes)
+    mask = jnp.asarray([True, False] * 5)
+    chosen = joined(select_bodies(mask, new, old).island, SHORE.sizes)
+    expected = np.where(mask, np.r_[100.0:108.0, np.nan, 109.0], np.arange(10.0))
+    np.testing.assert_array_equal(chosen, expected)
+    assert np.flatnonzero(not_finite(new)).tolist() == [8]
+    assert not_finite(old).tolist() == [False] * 10
+
+
+def test_counts_of_islands_have_columns_of_their_own() -> None:
+    class Twice(Clocked):
+        tallies = "ticks_down", "rounds"
+
+    host: Any = archipelago([Clocked("meadow"), Twice("meadow")], SHORE)
+    assert host.tallies == ("ticks", "ticks_down", "rounds")
+    host.open(10)
+    host.reset(np.arange(10), np.zeros((10, host.words), np.uint32))
+    alive = np.arange(10) != 3
+    for _ in range(4):
+        senses, outcome = host.step(np.zeros(10, np.int32), alive)
+    assert senses.shape == (10, 2)
+    assert len(outcome.fatal) == 10
+    first = np.isin(np.arange(10) % 5, [0, 1])
+    ticks = np.where(alive, 4, 0)
+    expected = [
+        np.where(first, ticks, 0),
+        np.where(first, -ticks, ticks),
+        np.where(first, 0, -ticks),
+    ]
+    np.testing.assert_array_equal(host.tally(), np.stack(expected, axis=1))
+    saved: Any = host.save()
+    other: Any = archipelago([Clocked("meadow"), Twice("meadow")], SHORE)
+    other.open(10)
+    other.load(saved)
+    np.testing.assert_array_equal(other.tally(), host.tally())
+    assert {name: len(array) for name, array in saved.items() if name.startswith("island")} == {
+        "island.0.mirror": 4, "island.0.tally": 4, "island.1.mirror": 6, "island.1.tally": 6
+    }  # fmt: skip
+    host.close()
+
+
+def test_a_single_island_is_its_own_habitat() -> None:
+    only = CartPole()
+    assert archipelago([only], Islands(("only",), (0, 5))) is only
+    assert at(only, 3) is only
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "message"),
+    [
+        (Keys(1, "left", "right"), Keys(1, "left", "up"), "west lacks the button 'up'"),
+        (Keys(1, count=2), Keys(1, count=3), "west lacks the button '2'"),
+        (CartPole(), Mirror(), "west is in JAX, east is on the host"),
+    ],
+)
+def test_islands_that_do_not_fit_together_are_refused(one: Any, other: Any, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        archipelago([one, other], SHORE)
+
+
+def test_choices_and_amounts_do_not_fit_together() -> None:
+    amounts = Keys(1, count=2)
+    amounts.action = Continuous(2)
+    with pytest.raises(InputError, match="the same kind of actions"):
+        archipelago([Keys(1, count=2), amounts], SHORE)
+
+
+WORDS = np.random.default_rng(3).integers(0, 2**32, (6, 4), dtype=np.uint32)
+
+
+def poles(**settings: Any) -> Any:
+    return load("CartPole-survival", {"habitat": settings}).build_habitat()
+
+
+def test_factors_are_those_of_step_scaled() -> None:
+    factors = {"force": 0.5, "pole-length": 3.0}
+    light, plain = poles(factors=factors), CartPole()
+    row = np.float32([[factors.get(name, 1.0) for name in plain.parameters]] * 6)
+    bodies = plain.reset(jnp.asarray(WORDS))
+    push = jnp.arange(6, dtype=jnp.int32) % 2
+    mine = shared(type(light).step, light)(bodies, push)[0]
+    expected = shared(CartPole.step_scaled, plain)(bodies, push, row)[0]
+    np.testing.assert_array_equal(mine, expected)
+    assert not np.array_equal(mine, shared(CartPole.step, plain)(bodies, push)[0])
+    twice = shared(type(light).step_scaled, light)(bodies, push, row)[0]
+    expected = shared(CartPole.step_scaled, plain)(bodies, push, row * row)[0]
+    np.testing.assert_array_equal(twice, expected)
+
+
+def test_factors_on_the_host_hold_from_the_opening_and_for_further_changes() -> None:
+    inner = HeldPoles()
+    host = scaled(inner, {"gravity": 2.0})
+    assert isinstance(host, HostHabitat)
+    host.open(4)
+    np.testing.assert_array_equal(inner.factors, [[2, 1, 1, 1, 1]] * 4)
+    host.set_factors(np.array([1, 3]), np.float32([[3, 1, 1, 1, 5]] * 2))
+    np.testing.assert_array_equal(
+        inner.factors[[0, 1, 3]], [[2, 1, 1, 1, 1]] + [[6, 1, 1, 1, 5]] * 2
+    )
+
+
+A, B = {"name": "a"}, {"name": "b"}
+MIXED = {"topology": "well-mixed"}
+
+
+@pytest.mark.parametrize(
+    ("islands", "more", "message"),
+    [
+        ([], {}, "write a list of islands"),
+        ([{"share": 1.0}], {}, r"habitat.islands.0.name is missing"),
+        ([A, A], {}, "'a' is used twice"),
+        ([{"name": "hazard"}], {}, "'hazard' is the name of a setting"),
+        ([{**A, "hazard": 2.0}, B], {}, "island a: hazard: input should be less than or equal to 1"),
+        ([{**A, "metabolism": {"store": 3.0}}, B], {}, "the task has no metabolism"),
+        ([{**A, "mutation": {"kind": "heritable"}}, B], {}, "islands cannot differ in this setting"),
+        ([{**A, "placement": {"topology": "ring"}}, B], {"placement": MIXED}, "cannot differ"),
+        ([{**A, "placement": {"migration": 3.0}}, B], {"placement": MIXED}, "placement.migration"),
+        ([{**A, "share": 100.0}, B], {}, "'b' gets no cell of 8"),
+        ([{**A, "share": 7.0}, B], {"placement": MIXED}, "b gets one cell"),
+        ([A, B], {"placement": {"migration": 0.1}}, "children cross the borders"),
+        ([{**A, "habitat": {"nme": 1}}, B], {}, "island a: there is no setting 'habitat.nme'"),
+        ([{**A, "habitat": {"factors": {"gravty": 2.0}}}, B], {}, "did you mean 'gravity'"),
+        ([{**A, "habitat": {"factors": {"gravity": 0.0}}}, B], {}, "is not above 0"),
+        ([A, B], {"seasons": [{"kind": "schedule", "setting": "a.hazard", "at": 3, "value": 0.1}]},
+         "a.hazard is not a setting that seasons can change"),
+    ],
+)  # fmt: skip
+def test_wrong_islands_are_refused_in_one_line(islands: Any, more: Any, message: str) -> None:
+    with pytest.raises(InputError, match=message) as told:
+        load("CartPole-survival", {"cells": 8, "habitat": {"islands": islands}, **more})
+    assert "\n" not in str(told.value)
+
+
+def test_migration_needs_islands_and_an_environment_has_none() -> None:
+    with pytest.raises(InputError, match="this world has no islands"):
+        load("CartPole-survival", {"placement": {**MIXED, "migration": 0.1}})
+    with pytest.raises(InputError, match="an environment is one habitat"):
+        Bodies(config(habitat={"islands": [A, B]}), 2)
+
+
+def test_borders_on_a_torus_lie_between_rows() -> None:
+    """Cells are shared in whole rows of six, as nearly as shares allow."""
+    islands = [{**A, "share": 1.0}, {**B, "share": 2.0}]
+    torus = config({**MEADOW, "habitat": {**MEADOW["habitat"], "islands": islands}}, cells=24,
+                   placement={"topology": "torus4"})  # fmt: skip
+    assert torus.placement.shape(24) == (4, 6)
+    assert torus.islands.bounds == (0, 6, 24)
+    assert torus.islands.of_cells([0, 5, 6, 23]).tolist() == [0, 0, 1, 1]
+
+
+def test_an_island_as_a_plain_world_has_its_own_rates_and_seasons() -> None:
+    seasons = [
+        {"kind": "schedule", "setting": "a.hazard", "at": 5, "value": 0.3},
+        {"kind": "schedule", "setting": "replication", "at": 6, "value": 0.3},
+    ]
+    both = config(
+        habitat={"islands": [{**A, "hazard": 0.2, "replication": 0.5}, B]}, seasons=seasons
+    )
+    first, second = both.by_island
+    assert (first.hazard, first.replication, first.islands.count) == (0.2, 0.5, 1)
+    assert [(each.setting, each.at) for each in first.seasons] == [
+        ("hazard", 5),
+        ("replication", 6),
+    ]
+    assert [each.setting for each in second.seasons] == ["replication"]
+    assert second == config(seasons=seasons[1:])
