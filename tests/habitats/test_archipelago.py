@@ -119,6 +119,26 @@ def test_counts_of_islands_have_columns_of_their_own() -> None:
     host.close()
 
 
+def test_all_islands_begin_a_step_before_one_has_ended_it() -> None:
+    """So the worker processes of all islands step at the same time."""
+    heard = list[str]()
+
+    class Slow(Mirror):
+        def begin(self, action: np.ndarray, alive: np.ndarray) -> Any:
+            def end() -> Any:
+                heard.append("ends")
+                return self.step(action, alive)
+
+            heard.append("begins")
+            return end
+
+    host: Any = archipelago([Slow("meadow"), Slow("meadow")], SHORE)
+    host.open(5)
+    host.reset(np.arange(5), np.zeros((5, host.words), np.uint32))
+    host.step(np.zeros(5, np.int32), np.ones(5, bool))
+    assert heard == ["begins", "begins", "ends", "ends"]
+
+
 def test_a_single_island_is_its_own_habitat() -> None:
     only = CartPole()
     assert archipelago([only], Islands(("only",), (0, 5))) is only

@@ -30,7 +30,7 @@ def test_a_life_that_is_gained_is_no_life_lost() -> None:
     arrays = {"action": np.zeros(4, np.int32), "ram": np.zeros((4, 128), np.uint8), "game_over": none,
               "points": np.zeros(4, np.float32), "lives": np.array([3, 4, 2, 2])}  # fmt: skip
     game = Atari(game="pong", food="lives_lost", fatal="lives_lost > 1")
-    stub: Any = SimpleNamespace(arrays=arrays, step=lambda alive: None)
+    stub: Any = SimpleNamespace(arrays=arrays, begin=lambda alive: None, finish=lambda: None)
     game._pool, game._tally = stub, np.zeros((4, 3), np.int32)
     game._lives = game._tally[:, 2]
     game._lives[:] = [4, 3, 4, 2]

@@ -26,7 +26,7 @@ def pond(**settings: Any) -> Gymnasium:
 
 def with_arrays(game: Gymnasium, **arrays: Any) -> Gymnasium:
     """Return a habitat whose environments report these arrays."""
-    stub: Any = SimpleNamespace(arrays=arrays, step=lambda alive: None)
+    stub: Any = SimpleNamespace(arrays=arrays, begin=lambda alive: None, finish=lambda: None)
     game._pool = stub
     return game
 

@@ -119,7 +119,7 @@ class ArchipelagoInJax(Archipelago, JaxHabitat):
 
 
 class ArchipelagoOnHost(Archipelago, HostHabitat):
-    """Islands on the host, stepped one after another."""
+    """Islands on the host. Simulators in other processes step on all islands at the same time."""
 
     def open(self, cells: int, watched: bool = False) -> None:
         """Allocate a body for each of N cells of whole worlds; see `HostHabitat.open`."""
@@ -142,10 +142,11 @@ class ArchipelagoOnHost(Archipelago, HostHabitat):
 
     def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
         """Step the bodies of living cells; see `HostHabitat.step`."""
-        stepped = [
-            habitat.step(action[own], alive[own])
+        begun = [
+            habitat.begin(action[own], alive[own])
             for habitat, own in zip(self.habitats, self._cells, strict=True)
         ]
+        stepped = [finish() for finish in begun]
         sensed, outcomes = zip(*stepped, strict=True)
         senses = np.zeros((len(alive), self.senses_size), np.float32)
         for own, each in zip(self._cells, sensed, strict=True):

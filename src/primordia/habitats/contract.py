@@ -14,6 +14,7 @@ Simulators in worker processes load this file, so it imports neither JAX nor pyd
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from enum import StrEnum
+from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple, TypeAlias
 
 import numpy as np
@@ -55,6 +56,10 @@ class Outcome(NamedTuple):
     """bool (N,): the habitat's own time limit ends the life"""
     fault: "Array | None" = None
     """bool (N,): the body's simulation has failed; the law itself detects NaN and infinity"""
+
+
+Stepped: TypeAlias = tuple[np.ndarray, Outcome]
+"""Senses float32 (N, S) and outcome of a step on the host."""
 
 
 class Ability(StrEnum):
@@ -252,6 +257,14 @@ class HostHabitat(Habitat):
 
         `alive` is bool (N,). The results of the other cells are not used.
         """
+
+    def begin(self, action: np.ndarray, alive: np.ndarray) -> Callable[[], Stepped]:
+        """Begin a step, and return the function that ends it, with the results of `step`.
+
+        A habitat whose simulators are other processes may let them begin, so that several islands step
+        at the same time. By default everything is done at the end.
+        """
+        return partial(self.step, action, alive)
 
     def close(self) -> None:
         """Release what `open` allocated."""

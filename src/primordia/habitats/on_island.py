@@ -1,7 +1,8 @@
 """A habitat as one island of an archipelago, with the senses, actions and counts of all islands."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import jax.numpy as jnp
@@ -17,6 +18,7 @@ from primordia.habitats.contract import (
     Continuous,
     Discrete,
     Outcome,
+    Stepped,
 )
 
 if TYPE_CHECKING:
@@ -80,7 +82,14 @@ class IslandOnHost(_OnIsland, AroundHost):
 
     def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
         """Step the bodies of living cells; see `HostHabitat.step`."""
-        senses, outcome = self.inner.step(self._own(action), alive)
+        return self.begin(action, alive)()
+
+    def begin(self, action: np.ndarray, alive: np.ndarray) -> Callable[[], Stepped]:
+        """Let the bodies of living cells begin; see `HostHabitat.begin`."""
+        return partial(self._finish, self.inner.begin(self._own(action), alive))
+
+    def _finish(self, finish: Callable[[], Stepped]) -> Stepped:
+        senses, outcome = finish()
         return self._wide(senses), outcome
 
     def tally(self) -> np.ndarray:

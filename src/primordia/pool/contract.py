@@ -15,13 +15,25 @@ class Pool(ABC):
     arrays: dict[str, np.ndarray]
     """the fields by name, each (N, ...)"""
 
-    @abstractmethod
     def step(self, todo: np.ndarray) -> None:
         """Step the cells of `todo`, bool (N,), by one tick.
 
         Raises:
             Trouble: a simulator failed.
         """
+        self.begin(todo)
+        self.finish()
+
+    @abstractmethod
+    def begin(self, todo: np.ndarray) -> None:
+        """Begin a step, which `finish` ends; until then the pool takes no other call.
+
+        So the workers of several pools can step at the same time.
+        """
+
+    @abstractmethod
+    def finish(self) -> None:
+        """End the step that `begin` began."""
 
     @abstractmethod
     def reset(self, todo: np.ndarray) -> None:

@@ -31,10 +31,13 @@ class InProcess(Pool):
             for cell in self._cells:
                 self._simulator.make(cell)
 
-    def step(self, todo: np.ndarray) -> None:
+    def begin(self, todo: np.ndarray) -> None:
         """Step the cells of `todo`, bool (N,), by one tick."""
         with _trouble():
             self._simulator.step(np.flatnonzero(todo).tolist())
+
+    def finish(self) -> None:
+        """Do nothing: `begin` has done the step."""
 
     def reset(self, todo: np.ndarray) -> None:
         """Begin new lives in the cells of `todo`, bool (N,)."""

@@ -76,14 +76,17 @@ class Workers(Pool):
         for first, worker in enumerate(self._workers):
             _await_ready(worker, len(range(first, cells, self._count)))
 
-    def step(self, todo: np.ndarray) -> None:
-        """Step the cells of `todo`, bool (N,), by one tick.
+    def begin(self, todo: np.ndarray) -> None:
+        """Let all workers step the cells of `todo`, bool (N,), by one tick."""
+        self.arrays["todo"][:] = todo
+        self._command(STEP)
+
+    def finish(self) -> None:
+        """Wait until every worker has stepped.
 
         Raises:
             Trouble: a worker died, or does not answer.
         """
-        self.arrays["todo"][:] = todo
-        self._command(STEP)
         self._await_all()
 
     def reset(self, todo: np.ndarray) -> None:

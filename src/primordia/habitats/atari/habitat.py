@@ -5,7 +5,8 @@ actions. Settings define death and food by expressions of RAM, points and lives.
 Arcade Learning Environment (extra `primordia[atari]`).
 """
 
-from functools import cached_property
+from collections.abc import Callable
+from functools import cached_property, partial
 from importlib.metadata import version
 from typing import TYPE_CHECKING
 
@@ -16,7 +17,7 @@ from primordia.habitats import conditions
 from primordia.habitats.atari.games import facts, legal_actions
 from primordia.habitats.atari.simulator import FIELDS, RAM, SCREEN
 from primordia.habitats.conditions import Expression, Names
-from primordia.habitats.contract import Discrete, HostHabitat, Outcome
+from primordia.habitats.contract import Discrete, HostHabitat, Outcome, Stepped
 from primordia.habitats.states import packed, unpacked
 from primordia.pool.contract import Pool
 from primordia.pool.opening import open_pool
@@ -193,9 +194,17 @@ class Atari(HostHabitat, Settings):
 
     def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
         """Step the games of the living by one tick."""
+        return self.begin(action, alive)()
+
+    def begin(self, action: np.ndarray, alive: np.ndarray) -> Callable[[], Stepped]:
+        """Let the emulators begin; see `HostHabitat.begin`."""
+        self._pool.arrays["action"][:] = action
+        self._pool.begin(alive)
+        return partial(self._finish, alive)
+
+    def _finish(self, alive: np.ndarray) -> Stepped:
         pool, lives = self._pool, self._lives
-        pool.arrays["action"][:] = action
-        pool.step(alive)
+        pool.finish()
         values = {name: pool.arrays[name] for name in ("ram", "points", "lives", "game_over")}
         values["lives_lost"] = np.maximum(lives - values["lives"], 0)
         lives[:] = values["lives"]

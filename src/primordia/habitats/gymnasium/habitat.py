@@ -6,7 +6,8 @@ with a seed from the birth's own random word. Environments run in worker process
 process.
 """
 
-from functools import cached_property
+from collections.abc import Callable
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
@@ -15,7 +16,7 @@ from pydantic import Field, PrivateAttr, model_validator
 from primordia.errors import InputError, Trouble
 from primordia.habitats import conditions
 from primordia.habitats.conditions import Expression, Names
-from primordia.habitats.contract import Ability, Action, HostHabitat, Outcome
+from primordia.habitats.contract import Ability, Action, HostHabitat, Outcome, Stepped
 from primordia.habitats.states import packed, unpacked
 from primordia.pool.contract import Pool
 from primordia.pool.opening import open_pool
@@ -235,9 +236,17 @@ class Gymnasium(HostHabitat, Settings):
 
     def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
         """Step the environments of the living by one tick."""
+        return self.begin(action, alive)()
+
+    def begin(self, action: np.ndarray, alive: np.ndarray) -> Callable[[], Stepped]:
+        """Let the environments begin; see `HostHabitat.begin`."""
+        self._pool.arrays["action"][:] = self._probe.acting.rows(action)
+        self._pool.begin(alive)
+        return partial(self._finish, alive)
+
+    def _finish(self, alive: np.ndarray) -> Stepped:
         arrays = self._pool.arrays
-        arrays["action"][:] = self._probe.acting.rows(action)
-        self._pool.step(alive)
+        self._pool.finish()
         self._age += alive
         names = ("obs", "reward", "terminated", "truncated")
         values = {name: arrays[name] for name in names} | {"info": self._of_info(arrays["info"])}
