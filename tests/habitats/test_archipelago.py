@@ -15,11 +15,14 @@ from primordia.habitats.archipelago import Parts, archipelago, at, joined, split
 from primordia.habitats.bodies import not_finite, select_bodies
 from primordia.habitats.cartpole.habitat import CartPole
 from primordia.habitats.contract import Continuous, Discrete, HostHabitat, JaxHabitat, Outcome
+from primordia.habitats.gymnax.habitat import Gymnax
 from primordia.habitats.scaled import scaled
+from primordia.runs.digest import digests
+from primordia.runs.fork import _form
 from primordia.settings.islands import Islands
 from tests.habitats.test_parameters import HeldPoles
 from tests.toys import Clocked, Mirror
-from tests.worlds import MEADOW, config
+from tests.worlds import MEADOW, config, law_of
 
 SHORE = Islands(("west", "east"), (0, 2, 5))
 """Cells 0 and 1, and cells 2 to 4."""
@@ -264,3 +267,53 @@ def test_an_island_as_a_plain_world_has_its_own_rates_and_seasons() -> None:
     ]
     assert [each.setting for each in second.seasons] == ["replication"]
     assert second == config(seasons=seasons[1:])
+
+
+def test_games_name_their_buttons() -> None:
+    """Equal names are one button, so they must be those of MinAtar's paper and of the console."""
+    breakout = Gymnax(env="Breakout-MinAtar")
+    assert breakout.buttons == ("noop", "left", "right")
+    assert Gymnax(env="CartPole-v1").buttons is None
+    pytest.importorskip("ale_py")
+    from primordia.habitats.atari.habitat import Atari
+
+    assert Atari(game="freeway").buttons == ("noop", "up", "down")
+
+
+def test_accidents_on_one_island_are_accidents_of_the_law() -> None:
+    """A law without accidents draws none, so it must know of those that an island alone has."""
+    none = law_of(habitat={"islands": [A, B]})
+    assert not none.has_hazard
+    for islands, seasons in (
+        ([{**A, "hazard": 0.1}, B], []),
+        ([{**A, "hazard": 0.0}, B], [{"kind": "schedule", "setting": "hazard", "at": 3, "value": 0.1}]),
+    ):  # fmt: skip
+        law = law_of(habitat={"islands": islands}, seasons=seasons)
+        assert law.has_hazard
+        assert law.compiled.has_hazard
+
+
+def test_empty_cells_of_an_island_do_not_enter_the_digest() -> None:
+    """Of two worlds of five cells, cells 1 and 3 of the second are alive."""
+    alive = np.zeros(10, bool)
+    alive[[6, 8]] = True
+    arrays = {
+        "world.organisms.alive": alive,
+        "bodies.island.0": np.arange(4),
+        "bodies.island.1": np.arange(6),
+    }
+    before = digests({}, arrays, 2, SHORE)
+    living = {"bodies.island.0": 3, "bodies.island.1": 4}
+    for name, row in living.items():
+        for changed in range(len(arrays[name])):
+            other = arrays[name].copy()
+            other[changed] += 100
+            after = digests({}, {**arrays, name: other}, 2, SHORE)
+            assert after[0] == before[0]
+            assert (after[1] != before[1]) == (changed == row), (name, changed)
+
+
+def test_saved_states_of_islands_may_have_another_length_in_a_fork() -> None:
+    arrays = {"bodies.island.1.states": np.zeros((6, 900)), "bodies.island.1.age": np.zeros((6, 2))}
+    assert _form("bodies.island.1.states", arrays) == (6,)
+    assert _form("bodies.island.1.age", arrays) == (6, 2)

@@ -12,10 +12,10 @@ import tomli_w
 import primordia
 from primordia.errors import InputError, Trouble
 from primordia.runs.archive import Archive
-from primordia.runs.kept import FOLDER
+from primordia.runs.kept import FOLDER, copy
 from tests.commands import complains, here
 from tests.robots import LEG, write_model
-from tests.worlds import HOSTED
+from tests.worlds import HOSTED, config
 
 pytest.importorskip("mujoco")
 
@@ -195,3 +195,20 @@ def test_a_habitat_of_ones_own_names_a_file_by_the_name_of_its_setting(
     habitat: Any = Archive(run.path).habitat
     habitat.open(1)
     assert np.array_equal(habitat._map, [[1, 2], [3, 4]])
+
+
+def test_the_files_of_every_island_are_kept(tmp_path: Path) -> None:
+    """Each with the files that it needs; the habitat is then made of the copies."""
+    for name in ("a", "b"):
+        (tmp_path / name).mkdir()
+        write_model(tmp_path / name)
+    own = {key: value for key, value in WALKER["habitat"].items() if key != "file"}
+    islands = [
+        {"name": name, "habitat": {"file": str(tmp_path / name / "walker.xml")}}
+        for name in ("a", "b")
+    ]
+    settings = config({**WALKER, "habitat": {**own, "islands": islands}}, cells=4)
+    run = tmp_path / "run"
+    run.mkdir()
+    kept = copy(settings, settings.build_habitat(), run)
+    assert set(kept.files) == {f"{name}/{file}" for name in ("a", "b") for file in NEEDED}

@@ -10,6 +10,7 @@ from primordia.errors import InputError
 from primordia.settings.tables import (
     code_of,
     did_you_mean,
+    files_in,
     flat,
     from_toml,
     merged,
@@ -18,6 +19,7 @@ from primordia.settings.tables import (
     replaced,
     tasks,
     values_of,
+    with_full_paths,
 )
 from tests.worlds import MEADOW
 
@@ -160,3 +162,16 @@ def test_the_first_of_equally_near_names_is_suggested(
 def test_settings_of_tasks_that_a_caller_changes_are_unchanged_for_the_next() -> None:
     tasks()["CartPole-survival"]["habitat"]["name"] = "mine"
     assert tasks()["CartPole-survival"]["habitat"]["name"] == "cartpole"
+
+
+def test_the_code_and_files_of_islands_are_those_of_the_habitat(tmp_path: Path) -> None:
+    """So the code of an island is trusted, and its files are kept, as those of a plain world."""
+    (tmp_path / "hill.xml").write_text("")
+    islands = [{"name": "a", "habitat": {"name": "pond:Pond", "env": "lake:Lake"}}, {"name": "b"},
+               {"name": "c", "habitat": {"file": "hill.xml"}}]  # fmt: skip
+    table = {"name": "mud:Mud", "islands": islands}
+    assert code_of(table, "name") == ["mud:Mud", "pond:Pond", "lake:Lake"]
+    assert code_of({"islands": 3}, "name") == code_of({"islands": [4]}, "name") == []
+    full = with_full_paths(tmp_path, {"habitat": table})["habitat"]
+    assert files_in(full) == [str(tmp_path / "hill.xml")]
+    assert full["islands"][1] == {"name": "b"}
