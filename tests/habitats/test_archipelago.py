@@ -294,16 +294,16 @@ def test_accidents_on_one_island_are_accidents_of_the_law() -> None:
 
 
 def test_empty_cells_of_an_island_do_not_enter_the_digest() -> None:
-    """Of two worlds of five cells, cells 1 and 3 of the second are alive."""
+    """Of two worlds of five cells, cells 1 and 4 of the second are alive."""
     alive = np.zeros(10, bool)
-    alive[[6, 8]] = True
+    alive[[6, 9]] = True
     arrays = {
         "world.organisms.alive": alive,
         "bodies.island.0": np.arange(4),
         "bodies.island.1": np.arange(6),
     }
     before = digests({}, arrays, 2, SHORE)
-    living = {"bodies.island.0": 3, "bodies.island.1": 4}
+    living = {"bodies.island.0": 3, "bodies.island.1": 5}
     for name, row in living.items():
         for changed in range(len(arrays[name])):
             other = arrays[name].copy()
