@@ -20,11 +20,10 @@ from primordia.errors import InputError
 from primordia.fitting import check
 from primordia.habitats import contract as habitats
 from primordia.habitats.archipelago import archipelago
-from primordia.habitats.change import changes_of
-from primordia.habitats.changing import changing
-from primordia.habitats.checks import check_properties
 from primordia.habitats.contract import AnyHabitat
-from primordia.habitats.scaled import scaled
+from primordia.habitats.made import made
+from primordia.habitats.traits import KEY as TRAITS
+from primordia.habitats.traits import Traits
 from primordia.law.act import Act
 from primordia.law.efference import Efferent
 from primordia.law.heredity import Heredity
@@ -157,13 +156,12 @@ class Config(Settings):
             table = replaced(table, original, copy)
         if KEY in table:
             return archipelago(habitats_of(self), self.islands)
-        own = dict(table)
-        changes, factors = own.pop("change", None), own.pop("factors", None)
-        habitat = make("habitat", own, habitats.find)
-        check_properties(habitat)
-        if factors is not None:
-            habitat = scaled(habitat, factors)
-        return habitat if changes is None else changing(habitat, changes_of(changes, habitat))
+        return made(table, self.traits)
+
+    @property
+    def traits(self) -> Traits | None:
+        """Return the traits of bodies; None if bodies are not inherited."""
+        return Traits.of(self.habitat[TRAITS]) if TRAITS in self.habitat else None
 
     @property
     def islands(self) -> Islands:
@@ -192,7 +190,8 @@ class Config(Settings):
 
     def build_layout(self, habitat: AnyHabitat) -> Layout:
         """Return the layout of the genomes of organisms that live in the habitat."""
-        return self.build_brain(habitat).layout(*self.sizes(habitat))
+        of_brain = self.build_brain(habitat).layout(*self.sizes(habitat))
+        return of_brain if self.traits is None else of_brain.with_body(len(self.traits.names))
 
     def build_law(self, habitat: AnyHabitat) -> Law:
         """Return the law of the run's worlds."""

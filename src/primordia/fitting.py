@@ -7,6 +7,7 @@ from primordia.errors import InputError
 from primordia.habitats.archipelago import Archipelago
 from primordia.habitats.checks import check_arrays
 from primordia.habitats.contract import AnyHabitat, Continuous, JaxHabitat
+from primordia.habitats.traits import KEY as TRAITS
 from primordia.law.law import Law
 from primordia.mutations.checks import check_mutation
 from primordia.own_code import LIBRARIES
@@ -73,6 +74,11 @@ def _check_islands(config: Any, law: Law) -> None:
                     f"habitat.islands.{number}.{name}: islands cannot differ in this setting; they"
                     " differ in habitat, hazard, replication and rates of metabolism and mutation"
                 )
+        if TRAITS in island.habitat:
+            raise InputError(
+                f"habitat.islands.{number}.habitat.traits: all islands have the same traits; write"
+                " them in the table habitat of the task"
+            )
         if island.metabolism and config.metabolism is None:
             raise InputError(
                 f"habitat.islands.{number}.metabolism: the task has no metabolism; add one for all"

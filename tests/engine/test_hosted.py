@@ -60,6 +60,7 @@ def chunks(habitat: Notebook) -> Any:
         islands=Islands(("",), (0, CELLS)),
         per_cell=lambda each: np.repeat(each, CELLS),
         cell_numbers=np.tile(np.arange(CELLS), 2),
+        heredity=SimpleNamespace(layout=SimpleNamespace(genes=0)),
     )
     return made
 
@@ -69,6 +70,7 @@ class Few(NamedTuple):
 
     alive: np.ndarray
     born: Wide
+    genome: dict[str, np.ndarray] = {}  # noqa: RUF012
 
 
 class Seeds(NamedTuple):

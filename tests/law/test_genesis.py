@@ -46,9 +46,9 @@ def test_worlds_begin_at_their_tick_and_wait_until_the_next_multiples(
 def test_bodies_get_the_words_of_their_world_tick_and_cell(words: int) -> None:
     """The high words of all draws are first, then the low words. The last low word is left out if odd."""
     law = law_of(MEADOW, cells=3, seeds=2)
-    worlds = begun(law, np.array([8, 2**63], np.uint64), tick=9).worlds
+    world = begun(law, np.array([8, 2**63], np.uint64), tick=9)
     birth = jax.jit(partial(birth_words, law, words=words))
-    found = np.asarray(birth(worlds, np.True_))
+    found = np.asarray(birth(world, np.True_))
     assert found.shape == (6, words)
     assert found.dtype == np.uint32
     draws = -(-words // 2)
@@ -57,7 +57,7 @@ def test_bodies_get_the_words_of_their_world_tick_and_cell(words: int) -> None:
         pairs = [drawn(seed, Purpose.BODY, 9, cell % 3, draw) for draw in range(draws)]
         flat = [int(pair.hi) for pair in pairs] + [int(pair.lo) for pair in pairs]
         assert found[cell].tolist() == flat[:words]
-    assert not np.asarray(birth(worlds, np.False_)).any()
+    assert not np.asarray(birth(world, np.False_)).any()
     key = stream(wide([8, 2**63]), Purpose.BODY, wide([9, 9]))
     some = jax.jit(body_words, static_argnums=2)(key, np.array([2, 0]), words)
     np.testing.assert_array_equal(some, found[[2, 3]])

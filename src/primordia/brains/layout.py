@@ -18,6 +18,8 @@ Arrays = TypeVar("Arrays", Array, np.ndarray)
 
 NAME = "[A-Za-z0-9_-]+"
 """Regular expression of a block's name, which becomes a part of names of settings and columns."""
+BODY = "body"
+"""The block of a body's genes; see `habitats.traits`."""
 
 
 @dataclass(frozen=True)
@@ -57,6 +59,24 @@ class Layout:
     def length(self) -> int:
         """P, the number of weights of one organism."""
         return int(self.sizes.sum())
+
+    @property
+    def genes(self) -> int:
+        """The number of a body's genes; 0 if bodies are not inherited."""
+        return prod(dict(self.blocks).get(BODY, (0,)))
+
+    def with_body(self, genes: int) -> "Layout":
+        """Return the layout with this number of genes of a body, after the blocks of a brain.
+
+        Raises:
+            InputError: a brain uses the block's name for weights.
+        """
+        if BODY in self.names:
+            raise InputError(
+                f"brain: its block {BODY!r} has the name of the block of a body's genes; rename it,"
+                " or remove habitat.traits"
+            )
+        return Layout((*self.blocks, (BODY, (genes,))))
 
     def flat(self, genome: Mapping[str, Array], cells: Array) -> Array:
         """Return the flat genomes of the organisms in some cells, (K, P).

@@ -141,7 +141,7 @@ class _Steps:
             active=alive & law.per_cell(live_worlds),
             died=died,
             newborn=newborn,
-            words=birth_words(law, world.worlds, newborn.any(), self.words),
+            words=birth_words(law, world, newborn.any(), self.words),
             ran=ran,
             remembered=moment_due(law, world.worlds, ran).any(),
             go_on=live_worlds.any() & room,

@@ -4,6 +4,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array, lax
 
+from primordia.brains.layout import BODY
 from primordia.compiled import shared
 from primordia.engine.state import Limits, State, filled, named_leaves, running, ticks_left
 from primordia.habitats.archipelago import ArchipelagoInJax, Parts, split
@@ -11,14 +12,13 @@ from primordia.habitats.bodies import insert_bodies, placeholder_bodies, select_
 from primordia.habitats.contract import Bodies, JaxHabitat
 from primordia.law import events as log
 from primordia.law.events import Events
-from primordia.law.genesis import begin, body_words
+from primordia.law.genesis import begin, words_of
 from primordia.law.law import Law
 from primordia.law.moments import remember
 from primordia.law.population import settle
 from primordia.law.tick import Fates, judge, keys_of, no_fates, rest, think
 from primordia.law.world import World
 from primordia.random.keys import Purpose, stream
-from primordia.random.wide import Wide
 
 
 class FusedChunks:
@@ -111,9 +111,8 @@ def _quiet(
 
 def _embody(law: Law, habitat: JaxHabitat, world: World, bodies: Bodies, newborn: Array) -> Bodies:
     """Insert fresh bodies for the newborn, bool (C,), on each island."""
-    key = stream(world.worlds.seed, Purpose.BODY, world.worlds.tick)
     if not isinstance(habitat, ArchipelagoInJax):
-        return _embody_in(habitat, key, range(law.cells), bodies, newborn)
+        return _embody_in(law, habitat, world, range(law.cells), bodies, newborn)
     islands = zip(
         habitat.habitats,
         law.islands.cells,
@@ -121,21 +120,24 @@ def _embody(law: Law, habitat: JaxHabitat, world: World, bodies: Bodies, newborn
         split(newborn, bodies.sizes),
         strict=True,
     )
-    parts = (_embody_in(own, key, cells, of, here) for own, cells, of, here in islands)
+    parts = (_embody_in(law, own, world, cells, of, here) for own, cells, of, here in islands)
     return Parts(tuple(parts), bodies.sizes)
 
 
 def _embody_in(
-    habitat: JaxHabitat, key: Wide, cells: range, bodies: Bodies, newborn: Array
+    law: Law, habitat: JaxHabitat, world: World, cells: range, bodies: Bodies, newborn: Array
 ) -> Bodies:
     """Insert fresh bodies into `cells` of each world, in batches, since bodies may be expensive.
 
-    `bodies` and `newborn`, bool (W x len(cells),), are those of these cells; `key` is (W,).
+    `bodies` and `newborn`, bool (W x len(cells),), are those of these cells.
     """
+    key = stream(world.worlds.seed, Purpose.BODY, world.worlds.tick)
+    genome = world.organisms.genome
 
     def one_batch(rows: Array, valid: Array, carry: tuple[Bodies]) -> tuple[Bodies]:
-        world, cell = rows // len(cells), rows % len(cells) + cells.start
-        words = body_words(key.take(world), cell, habitat.words)
+        of, cell = rows // len(cells), rows % len(cells) + cells.start
+        own = {name: genome[name][of * law.cells + cell] for name in genome if name == BODY}
+        words = words_of(law, own, key.take(of), cell, habitat.words)
         where = jnp.where(valid, rows, len(newborn))
         return (insert_bodies(carry[0], where, habitat.reset(words)),)
 

@@ -18,7 +18,7 @@ from primordia.engine.tallies import Tallies
 from primordia.errors import InputError, Trouble
 from primordia.habitats.contract import Ability, HostHabitat
 from primordia.law import events as log
-from primordia.law.genesis import begin, body_words
+from primordia.law.genesis import begin, words_of
 from primordia.law.law import Law
 from primordia.law.life import Thought
 from primordia.law.tick import no_fates
@@ -156,7 +156,8 @@ class HostedChunks:
         alive, senses = np.flatnonzero(world.organisms.alive), senses.copy()
         seed = world.worlds.seed.map(self._law.per_cell)
         key = stream(seed, Purpose.BODY, world.organisms.born)
-        words = np.asarray(body_words(key, self._law.cell_numbers, self._habitat.words))
+        genome, cells = world.organisms.genome, self._law.cell_numbers
+        words = np.asarray(words_of(self._law, genome, key, cells, self._habitat.words))
         if len(alive):
             senses[alive] = self._habitat.reset(alive, words[alive])
         return senses

@@ -13,7 +13,7 @@ from primordia.errors import InputError
 from primordia.habitats.contract import Action, Compound, Continuous, Discrete, JaxHabitat
 from primordia.habitats.on_host import OnHost
 from primordia.law import life
-from primordia.law.genesis import body_words
+from primordia.law.genesis import words_of
 from primordia.law.life import Vitals
 from primordia.law.metabolism import ONE, Rates, to_fixed_point
 from primordia.random.keys import Purpose, stream
@@ -69,7 +69,8 @@ class Bodies:
         if not len(cells):
             return
         keys = stream(wide(births.seeds.astype(np.uint64)), Purpose.BODY, wide(births.ticks))
-        words = body_words(keys, jnp.asarray(births.cells, jnp.int32), self.habitat.words)
+        cells_of, none = jnp.asarray(births.cells, jnp.int32), None  # a policy has no genes
+        words = words_of(self.law, none, keys, cells_of, self.habitat.words)
         self.senses[cells] = self.habitat.reset(cells, np.asarray(words))
         energy, eaten = (np.array(each) for each in self._vitals)
         energy[cells], eaten[cells] = self._store[cells], 0

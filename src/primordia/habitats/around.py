@@ -64,6 +64,10 @@ class _Around(Habitat):
         """Return the inner habitat's picture."""
         return self.inner.picture(body, action)
 
+    def picture_scaled(self, body: Bodies, action: np.ndarray, factors: np.ndarray) -> "Image":
+        """Return the inner habitat's picture of a body with other parameters."""
+        return self.inner.picture_scaled(body, action, factors)
+
     def caption(self, body: Bodies, action: np.ndarray) -> str:
         """Return the inner habitat's caption."""
         return self.inner.caption(body, action)

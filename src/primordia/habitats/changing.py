@@ -115,7 +115,14 @@ class _Changing:
         """
         course, chosen = jax.tree.map(lambda leaf: leaf[None], (body.course, np.asarray(action)))
         done = np.asarray(act(self.changes, self.action, course, chosen))[0]
-        return self.inner.picture(body.inner, done)
+        if not self.scaled:
+            return self.inner.picture(body.inner, done)
+        return self.inner.picture_scaled(body.inner, done, self._factors_now(body))
+
+    def _factors_now(self, body: Changed) -> np.ndarray:
+        """Return the factors of the parameters of one body, float32 (P,)."""
+        course = jax.tree.map(lambda leaf: leaf[None], body.course)
+        return np.asarray(factors_of(self.changes, self.scaled, course))[0]
 
     def caption(self, body: Changed, action: np.ndarray) -> str:
         """Return the wrapped habitat's caption, how often the world changed, and the factors now."""
@@ -124,9 +131,7 @@ class _Changing:
             self.inner.caption(body.inner, action),
             f"{count} change{'' if count == 1 else 's'}",
         ]
-        course = jax.tree.map(lambda leaf: leaf[None], body.course)
-        factors = np.asarray(factors_of(self.changes, self.scaled, course))[0]
-        named = zip(self.scaled, factors, strict=True)
+        named = zip(self.scaled, self._factors_now(body), strict=True)
         parts += [f"{name} x {factor:.2f}" for name, factor in named if factor != 1]
         return ", ".join(parts)
 

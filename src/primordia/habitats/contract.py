@@ -72,7 +72,7 @@ class Ability(StrEnum):
     SAVE = "save"
     """save bodies, so that they go on exactly"""
     SCALE = "scale"
-    """multiply physical parameters of each body by factors, for changes within a life"""
+    """multiply physical parameters of each body by factors, for traits and for changes within a life"""
 
 
 if not TYPE_CHECKING:
@@ -192,6 +192,13 @@ class Habitat(ABC):
         `replay` writes two lines of captions on it, 12 to 48 pixels from the top.
         """
         raise NotImplementedError
+
+    def picture_scaled(self, body: Bodies, action: np.ndarray, factors: np.ndarray) -> "Image":
+        """Return a picture of a body whose `parameters` are multiplied by factors, float32 (P,).
+
+        By default they are not to be seen: the picture is that of `picture`.
+        """
+        return self.picture(body, action)
 
     def caption(self, body: Bodies, action: np.ndarray) -> str:
         """Return the second line of a picture's captions, such as the action's name and a score."""

@@ -1,7 +1,7 @@
 """Habitats with other physical parameters: `[habitat] factors`, for any habitat that has parameters."""
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import jax.numpy as jnp
 import numpy as np
@@ -13,16 +13,33 @@ from primordia.habitats.checks import check_parameters
 from primordia.habitats.contract import AnyHabitat, Bodies, JaxHabitat, Outcome
 from primordia.settings.tables import did_you_mean
 
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
 LARGEST = 1e6
 """Largest factor."""
 
 
-class ScaledInJax(AroundJax):
-    """A habitat in JAX whose parameters are those of the inner habitat times factors."""
+class _Scaled:
+    """What scaled habitats have in common in JAX and on the host."""
 
-    def __init__(self, inner: JaxHabitat, factors: tuple[float, ...]) -> None:
-        super().__init__(inner, factors)
+    inner: Any
+
+    def __init__(self, inner: AnyHabitat, factors: tuple[float, ...]) -> None:
+        super().__init__(inner, factors)  # type: ignore[call-arg]
         self._factors = np.array(factors, np.float32)
+
+    def picture(self, body: Bodies, action: np.ndarray) -> "Image":
+        """Return a picture of a body with these parameters."""
+        return self.inner.picture_scaled(body, action, self._factors)
+
+    def picture_scaled(self, body: Bodies, action: np.ndarray, factors: np.ndarray) -> "Image":
+        """Return a picture of a body whose parameters change by further factors, float32 (P,)."""
+        return self.inner.picture_scaled(body, action, self._factors * factors)
+
+
+class ScaledInJax(_Scaled, AroundJax):
+    """A habitat in JAX whose parameters are those of the inner habitat times factors."""
 
     def step(self, bodies: Bodies, action: Array) -> tuple[Bodies, Outcome]:
         """Step all bodies by one tick; see `JaxHabitat.step`."""
@@ -34,12 +51,8 @@ class ScaledInJax(AroundJax):
         return self.inner.step_scaled(bodies, action, jnp.asarray(self._factors) * factors)
 
 
-class ScaledOnHost(AroundHost):
+class ScaledOnHost(_Scaled, AroundHost):
     """A habitat on the host whose parameters are those of the inner habitat times factors."""
-
-    def __init__(self, inner: AnyHabitat, factors: tuple[float, ...]) -> None:
-        super().__init__(inner, factors)
-        self._factors = np.array(factors, np.float32)
 
     def open(self, cells: int, watched: bool = False) -> None:
         """Allocate a body for each of N cells; see `HostHabitat.open`."""

@@ -4,6 +4,8 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array, lax
 
+from primordia.brains.contract import Genome
+from primordia.brains.layout import BODY
 from primordia.compiled import shared
 from primordia.law import moments
 from primordia.law.act import Acts
@@ -59,15 +61,34 @@ def empty_worlds(law: Law, seed: Wide) -> World:
     return World(organisms, worlds)
 
 
-def birth_words(law: Law, worlds: Worlds, needed: Array, words: int) -> Array:
-    """Return random words for bodies born in this tick, or zeros if not `needed`; uint32 (C, words)."""
+def birth_words(law: Law, world: World, needed: Array, words: int) -> Array:
+    """Return the words of bodies born in this tick, or zeros if not `needed`; uint32 (C, words)."""
+    (organisms, worlds), cells = world, law.cell_numbers
     key = stream(worlds.seed, Purpose.BODY, worlds.tick).map(law.per_cell)
     return lax.cond(
         needed,
-        lambda key: body_words(key, law.cell_numbers, words),
+        lambda key: words_of(law, organisms.genome, key, cells, words),
         lambda _: jnp.zeros((law.worlds * law.cells, words), jnp.uint32),
         key,
     )
+
+
+def words_of(law: Law, genome: Genome | None, key: Wide, cells: Array, words: int) -> Array:
+    """Return the words of N bodies, uint32 (N, words): genes of the body, if any, then random words.
+
+    Args:
+        law: the law.
+        genome: blocks of the genomes, (N, *shape) each; None: all genes of the body are 0.
+        key: keys of the births, (N,).
+        cells: cells within worlds, (N,).
+        words: number of words.
+    """
+    genes = law.heredity.layout.genes
+    drawn = body_words(key, cells, words - genes)
+    if not genes:
+        return drawn
+    own = jnp.zeros((len(drawn), genes), jnp.float32) if genome is None else genome[BODY]
+    return jnp.concatenate([own.view(jnp.uint32), drawn], axis=1)
 
 
 def body_words(key: Wide, cells: Array, words: int) -> Array:

@@ -61,9 +61,13 @@ class CartPole(JaxHabitat, Settings):
 
     def picture(self, body: np.ndarray, action: np.ndarray) -> "Image":
         """Return a picture of the cart, its pole and its push."""
+        return self.picture_scaled(body, action, np.ones(len(self.parameters), np.float32))
+
+    def picture_scaled(self, body: np.ndarray, action: np.ndarray, factors: np.ndarray) -> "Image":
+        """Return a picture of a cart and a pole of another length and mass."""
         from primordia.habitats.cartpole.picture import draw
 
-        return draw(body, int(action), self.track_limit)
+        return draw(body, int(action), self.track_limit, Physics(*factors.tolist()))
 
     def reset(self, words: Array) -> Array:
         """Return bodies from words uint32 (N, 4); 24 bits of each become one coordinate."""

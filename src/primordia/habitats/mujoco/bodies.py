@@ -23,6 +23,8 @@ class Bodies:
         """Allocate the bodies, and observe the `simulator.observables` named in `observed`."""
         # With one thread the batch starts none: the calling thread steps the bodies.
         self.batch = package().batch.Batch(model, cells, nthread=cores.count())
+        self.mass = np.full(cells, model.body_subtreemass[0])
+        """masses of the whole bodies, float64 (N,), kg"""
         bind, wanted = self.batch.bind, set(observed)
         self.views: dict[str, Any] = {name: bind(name) for name in STATE}
         """Views of the bodies' state by name, which change as the bodies do"""
@@ -69,7 +71,7 @@ class Bodies:
 
     def observe(self, before: dict[str, np.ndarray]) -> dict[str, Any]:
         """Return the present values of the observables, given `positions` before the tick."""
-        views, values = self.views, dict(self.views)
+        views, values = self.views, {**self.views, "mass": self.mass}
         if "forward" in before:
             values["forward"] = self._tracked["forward"] - before["forward"]
         if "com" in before:

@@ -6,10 +6,10 @@ The results do not depend on the number of threads. A saved row of state include
 MuJoCo's solver, so a body goes on exactly.
 """
 
-from functools import cached_property
+from functools import cached_property, lru_cache
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from pydantic import Field, PrivateAttr, model_validator
@@ -18,6 +18,7 @@ from primordia.habitats import conditions
 from primordia.habitats.conditions import Expression, Names
 from primordia.habitats.contract import Continuous, HostHabitat, Outcome
 from primordia.habitats.mujoco import physics
+from primordia.habitats.mujoco.adjustable import Adjustable
 from primordia.habitats.mujoco.bodies import Bodies
 from primordia.habitats.mujoco.simulator import (
     fingerprint,
@@ -34,6 +35,9 @@ from primordia.settings.base import Settings
 
 if TYPE_CHECKING:
     from PIL.Image import Image
+
+RENDERERS = 4
+"""number of bodies for which the means to draw them are kept"""
 
 
 class MuJoCo(HostHabitat, Settings):
@@ -62,6 +66,11 @@ class MuJoCo(HostHabitat, Settings):
     food: str = Field("0", description="amount gathered in a tick")
     effort: str = Field("0", description="amount exerted in a tick")
     target: Target | None = Field(None, description="an object that the robot must reach")
+    adjustable: dict[str, Annotated[tuple[str, ...], Field(strict=False)]] = Field(
+        {},
+        description="physical parameters by name, and the attributes of the model that each multiplies,"
+        " such as geom.thigh.size[1]",
+    )
     episode: int | None = Field(
         None,
         ge=1,
@@ -72,6 +81,10 @@ class MuJoCo(HostHabitat, Settings):
     )
 
     _bodies: Bodies = PrivateAttr()
+    _models: list[Any] = PrivateAttr()
+    """the model of each body, [N]; they differ only with `adjustable` parameters"""
+    _refused: dict[int, str] = PrivateAttr()
+    """why MuJoCo refuses the body of a cell, which has the usual model instead"""
     _dice: np.ndarray = PrivateAttr()
     """uint64 (N,): dice from which targets get their positions"""
 
@@ -79,6 +92,11 @@ class MuJoCo(HostHabitat, Settings):
     def _check_settings(self) -> "MuJoCo":
         assert self._sense_expressions
         assert self._observed is not None
+        assert self._adjusted
+        if taken := set(self.adjustable) & set(physics.FIELDS):
+            raise ValueError(
+                f"adjustable: {min(taken)} is a parameter already; choose another name"
+            )
         if (original := self.original()) and original.senses_size != self.senses_size:
             raise ValueError(
                 f"scored: these settings must give {self.senses_size} senses, as in the task"
@@ -156,8 +174,8 @@ class MuJoCo(HostHabitat, Settings):
 
     @property
     def parameters(self) -> tuple[str, ...]:
-        """Physical parameters that may change within a life."""
-        return physics.offered(self._model)
+        """Physical parameters that may differ from body to body, and change within a life."""
+        return *physics.offered(self._model), *self.adjustable
 
     def open(self, cells: int, watched: bool = False) -> None:
         """Allocate the bodies."""
@@ -166,6 +184,7 @@ class MuJoCo(HostHabitat, Settings):
             model = load_model(self.file, self.timestep, forces=True)
         self._bodies = Bodies(model, cells, self._observed)
         self._dice = np.zeros(cells, np.uint64)
+        self._models, self._refused = [model] * cells, {}
 
     def reset(self, cells: np.ndarray, words: np.ndarray) -> np.ndarray:
         """Put the bodies of cells into the model's pose, with noise from words uint32 (K, words)."""
@@ -187,6 +206,7 @@ class MuJoCo(HostHabitat, Settings):
         bodies = self._bodies  # pydantic finds a private attribute slowly
         np.clip(action, *self._range, out=bodies.views["ctrl"])
         before, fault = bodies.positions(), bodies.step(alive, self.substeps)
+        fault[[*self._refused]] = True
         values = self._observe(before)
         outcome = self._judge(values, fault)
         if self.target is not None and (reached := values["reached"] & alive).any():
@@ -204,7 +224,34 @@ class MuJoCo(HostHabitat, Settings):
 
     def set_factors(self, cells: np.ndarray, factors: np.ndarray) -> None:
         """Multiply the parameters of the bodies in cells; see `HostHabitat.set_factors`."""
-        physics.scale(self._model, self._bodies.batch, cells, factors)
+        bodies = self._bodies
+        if self.adjustable:
+            self._remake(cells, factors)
+            bodies.mass[cells] = [self._models[c].body_subtreemass[0] for c in cells.tolist()]
+        else:
+            physics.scale(self._model, bodies.batch, cells, factors)
+            of_mass = factors[:, self.parameters.index(physics.DERIVING)]
+            bodies.mass[cells] = self._model.body_subtreemass[0] * of_mass.astype(float)
+
+    def _remake(self, cells: np.ndarray, factors: np.ndarray) -> None:
+        """Give bodies models of their own; a body that MuJoCo refuses fails in its next tick."""
+        for cell, row in zip(cells.tolist(), factors.tolist(), strict=True):
+            self._refused.pop(cell, None)
+            try:
+                self._models[cell] = self._adjusted.model(tuple(row))
+            except ValueError as error:
+                self._models[cell] = self._model
+                self._refused[cell] = " ".join(str(error).split())
+        self._bodies.batch.set_models(self._models)
+
+    @cached_property
+    def _adjusted(self) -> Adjustable:
+        forces = "cfrc_ext" in self._observed
+        return Adjustable(self.file, self.timestep, self.adjustable, forces)
+
+    def message(self, cell: int) -> str:
+        """Return why MuJoCo refused a body; "" for a simulation that failed."""
+        return self._refused.get(cell, "")
 
     def _judge(self, values: dict[str, Any], fault: Any) -> Outcome:
         """Return the outcome of a tick, from the values of the observables after it."""
@@ -257,6 +304,21 @@ class MuJoCo(HostHabitat, Settings):
     def picture(self, body: dict[str, np.ndarray], action: np.ndarray) -> "Image":
         """Return a picture of the robot, with a margin for captions above."""
         return self._renderer.draw(body["qpos"])
+
+    def picture_scaled(
+        self, body: dict[str, np.ndarray], action: np.ndarray, factors: np.ndarray
+    ) -> "Image":
+        """Return a picture of a robot with other lengths; other parameters are not to be seen."""
+        if not self.adjustable:
+            return self.picture(body, action)
+        return self._renderer_of(tuple(factors.tolist())).draw(body["qpos"])
+
+    @cached_property
+    def _renderer_of(self) -> Any:
+        from primordia.habitats.mujoco.picture import Renderer
+
+        drawn = Adjustable(self.file, self.timestep, self.adjustable, textures=True)
+        return lru_cache(RENDERERS)(lambda factors: Renderer(drawn.model(factors)))
 
     def caption(self, body: dict[str, np.ndarray], action: np.ndarray) -> str:
         """Return the distance travelled along x, if the robot can travel."""

@@ -1,8 +1,11 @@
 """Physical parameters of a MuJoCo model that may differ from body to body."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+
+from primordia.habitats.mujoco.simulator import package
 
 FIELDS = {
     "gravity": ("opt.gravity",),
@@ -42,6 +45,18 @@ def scale(model: Any, batch: Any, cells: np.ndarray, factors: np.ndarray) -> Non
             batch.expand(field)[cells] = value * factor.reshape(-1, *[1] * value.ndim)
     if DERIVING in names:
         batch.set_const(cells)
+
+
+def scale_model(model: Any, factors: Sequence[float]) -> None:
+    """Multiply the parameters of one model by factors, (P,), of the parameters `offered`."""
+    for name, factor in zip(offered(model), factors, strict=True):
+        for field in FIELDS[name]:
+            value = _value(model, field)
+            if np.ndim(value):
+                value[:] *= factor
+            else:
+                setattr(model.opt, field.removeprefix("opt."), value * factor)
+    package().mj_setConst(model, package().MjData(model))
 
 
 def _value(model: Any, field: str) -> Any:

@@ -59,11 +59,17 @@ def load_model(file: str, timestep: float | None, forces: bool = False) -> Any:
     if not isfile(path):
         raise ValueError(f"file: there is no {path}")
     try:
-        model = package().MjModel.from_xml_path(str(path)) if not forces else _with_forces(path)
+        read = package().MjModel.from_xml_path
+        model = compiled(editable(file, forces)) if forces else read(str(path))
     except ValueError as error:
         raise ValueError(f"file: {path}: {' '.join(str(error).split())}") from None
     if not model.nu:
         raise ValueError(f"file: {path} has no actuators, so a brain could do nothing")
+    return finished(model, timestep)
+
+
+def finished(model: Any, timestep: float | None) -> Any:
+    """Return a compiled model with its options set; see `load_model`."""
     if timestep is not None:
         model.opt.timestep = timestep
     # A state that is not finite must not be reset, so that its body dies of a fault.
@@ -78,13 +84,29 @@ def _spec(file: str | Path) -> Any:
         return package().MjSpec.from_file(str(file))
 
 
-def _with_forces(file: Path) -> Any:
-    """Return a model with a sensor of forces on the robot's first body."""
-    spec, mujoco = _spec(file), package()
-    spec.bodies[ROOT].add_site(name=FORCES)
-    kind, on = mujoco.mjtSensor.mjSENS_FORCE, mujoco.mjtObj.mjOBJ_SITE
-    spec.add_sensor(name=FORCES, type=kind, objtype=on, objname=FORCES)
-    return spec.compile()
+def compiled(spec: Any) -> Any:
+    """Return the MjModel of an MjSpec, without such warnings."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return spec.compile()
+
+
+def editable(file: str, forces: bool, textures: bool = True) -> Any:
+    """Return the MjSpec of an MJCF file; see `load_model`.
+
+    Without `textures` the model is the same to the simulator, and a twentieth of the size.
+    """
+    spec, mujoco = _spec(_path(file)), package()
+    if forces:
+        spec.bodies[ROOT].add_site(name=FORCES)
+        kind, on = mujoco.mjtSensor.mjSENS_FORCE, mujoco.mjtObj.mjOBJ_SITE
+        spec.add_sensor(name=FORCES, type=kind, objtype=on, objname=FORCES)
+    if not textures:
+        for material in spec.materials:
+            material.textures = [""] * len(material.textures)
+        for texture in list(spec.textures):
+            spec.delete(texture)
+    return spec
 
 
 def needed_files(file: str) -> list[str]:
@@ -153,6 +175,7 @@ def observables(model: Any) -> Names:
         "travelled": "amount",
         "com_forward": "amount",
         "time": "amount",
+        "mass": "amount",
         "cfrc_ext": dict.fromkeys(ids_by_name(model, "body"), 6),
         **{name: kind for name, kind in of_some_models.items() if kind},
     }

@@ -52,7 +52,8 @@ class Players(NamedTuple):
     @property
     def deterministic(self) -> bool:
         """Whether all games of a player are the same."""
-        return self.habitat.words == 0 and self.law.motor.kind == "direct"
+        random = self.habitat.words - self.law.heredity.layout.genes
+        return random == 0 and self.law.motor.kind == "direct"
 
     def take(self, index: slice | np.ndarray) -> "Players":
         """Return the players at an index."""

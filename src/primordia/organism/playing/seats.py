@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from primordia.law.genesis import body_words
+from primordia.law.genesis import words_of
 from primordia.law.law import Law
 from primordia.law.life import Vitals
 from primordia.law.metabolism import Rates, to_fixed_point
@@ -106,7 +106,8 @@ def mark(senses: Any) -> Any:
 def begun(law: Law, words: int, seated: Seats) -> Begun:
     """Return games at their start; `words` is the number of random words of each body."""
     cells, store = jnp.asarray(seated.cells), to_fixed_point(seated.rates.store)
-    drawn = body_words(stream(seated.keys, Purpose.BODY, wide([0])), cells, words)
     mind = Mind(law.heredity.layout.split(jnp.asarray(seated.genomes)), seated.keys, cells)
+    key = stream(seated.keys, Purpose.BODY, wide([0]))
+    drawn = words_of(law, mind.genome, key, cells, words)
     memory = jnp.zeros((len(store), law.memory), jnp.float32)
     return Begun(mind, memory, Vitals(store, jnp.zeros_like(store)), drawn)

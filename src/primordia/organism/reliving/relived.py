@@ -27,7 +27,7 @@ from primordia.habitats.contract import AnyHabitat
 from primordia.history.births import place_in
 from primordia.history.climate import PastClimate
 from primordia.history.rebuilding import rebuild
-from primordia.law.genesis import body_words
+from primordia.law.genesis import words_of
 from primordia.law.law import Law
 from primordia.law.life import BODILY, Vitals, first_memory, inherits_memory
 from primordia.law.metabolism import ONE, Rates, to_fixed_point
@@ -236,7 +236,8 @@ class RelivedLife:
         if self.stored is not None:
             return self._restored(alone, self.stored)
         key = stream(self._seed, Purpose.BODY, wide(self.record.born))
-        words = body_words(key, jnp.asarray(self.record.cell), self.habitat.words)
+        cell = jnp.asarray(self.record.cell)
+        words = words_of(self.law, self.genome, key, cell, self.habitat.words)
         if self.law.act is None:
             store = to_fixed_point(self._climate(np.array([self.begins]))["metabolism.store"])
         else:

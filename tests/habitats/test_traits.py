@@ -1,0 +1,212 @@
+"""Traits: factors from genes, bodies with these factors, pictures, and messages."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as some
+
+from primordia.compiled import shared
+from primordia.config import load, validated
+from primordia.errors import InputError
+from primordia.habitats.cartpole.habitat import CartPole
+from primordia.habitats.traits import Traits, traits_in
+
+TRAITS = Traits.of(
+    {
+        "pole-length": {"least": 0.1, "most": 4.0, "founder": 0.5},
+        "cart": {"of": ["cart-mass", "force"], "least": 0.9, "most": 1.1},
+    }
+)
+GENES = some.floats(-100, 100, width=32)
+
+
+def poles(**traits: Any) -> Any:
+    """Return CartPole with traits."""
+    return load("CartPole-survival", {"habitat": {"traits": traits}}).build_habitat()
+
+
+@given(some.lists(some.tuples(GENES, GENES), min_size=1, max_size=9))
+def test_factors_stay_in_their_range_and_are_reflected_at_its_ends(genes: list) -> None:
+    rows = np.array(genes, np.float32)
+    factors = TRAITS.factors(rows)
+    assert factors.dtype == np.float32
+    least, most = np.float32([0.1, 0.9]), np.float32([4.0, 1.1])
+    assert ((factors >= least) & (factors <= most)).all()
+    turn, low = 2 * np.log2([40, 1.1 / 0.9]), np.log2([0.1 / 0.5, 0.9])
+    along = np.mod(rows - low, turn)
+    octaves = low + np.minimum(along, turn - along)
+    np.testing.assert_allclose(np.log2(factors / [0.5, 1.0]), octaves, atol=2e-4)
+
+
+def test_a_gene_counts_octaves_from_the_founder() -> None:
+    genes = np.array([[0, 0], [1, 0], [-1, 0], [2.5, 0]], np.float32)
+    factors = TRAITS.factors(genes)
+    np.testing.assert_array_equal(factors[:3, 0], np.float32([0.5, 1.0, 0.25]))
+    np.testing.assert_allclose(factors[3, 0], 0.5 * 2**2.5, rtol=2e-7)
+    assert (factors[:, 1] == 1).all()
+
+
+@pytest.mark.parametrize("count", [1, 7, 1000])
+def test_factors_have_the_same_bits_on_the_host_and_in_jax(count: int) -> None:
+    genes = np.random.default_rng(count).normal(scale=3, size=(count, 2)).astype(np.float32)
+    in_jax = np.asarray(shared(Traits.factors, TRAITS)(genes))
+    np.testing.assert_array_equal(in_jax, TRAITS.factors(genes))
+
+
+def test_a_trait_multiplies_all_its_parameters() -> None:
+    factors = TRAITS.by_parameter(np.array([[0.5, 3.0]], np.float32), CartPole.parameters)
+    named = dict(zip(CartPole.parameters, factors[0].tolist(), strict=True))
+    assert named == {"gravity": 1, "pole-length": 0.5, "pole-mass": 1, "cart-mass": 3, "force": 3}
+
+
+def test_pictures_and_captions_show_traits() -> None:
+    habitat = poles(**{"pole-length": {"least": 0.1, "most": 4.0}})
+    assert traits_in(habitat) == habitat.traits
+    words = np.zeros((3, habitat.words), np.uint32)
+    words[:, 0] = np.array([0, 1, -2], np.float32).view(np.uint32)
+    bodies = habitat.reset(words)
+    seen = [_row(bodies, row) for row in range(3)]
+    pictures = [np.asarray(habitat.picture(body, np.int32(1))) for body in seen]
+    red = [((each[..., 0] > 180) & (each[..., 2] < 90)).any(axis=1).sum() for each in pictures]
+    usual = habitat.inner.picture(seen[0].inner, np.int32(1))
+    assert habitat.picture(seen[0], np.int32(1)).tobytes() == usual.tobytes()
+    assert red[2] < red[0] < red[1]
+    assert habitat.caption(seen[2], np.int32(1)) == "action 1, pole-length x 0.25"
+
+
+def _row(bodies: Any, row: int) -> Any:
+    import jax
+
+    return jax.tree.map(lambda leaf: np.asarray(leaf)[row], bodies)
+
+
+@pytest.mark.parametrize(
+    ("traits", "says"),
+    [
+        ({"pole": {"least": 0.5, "most": 2.0}}, "there is no physical parameter 'pole'"),
+        ({"force": {"of": ["forse"], "least": 0.5, "most": 2.0}}, "did you mean 'force'?"),
+        ({"force": {"least": 2.0, "most": 0.5}}, "must be in this order"),
+        ({"force": {"least": 0.5, "most": 2.0, "founder": 3.0}}, "must be in this order"),
+        ({"force": {"least": 0, "most": 2.0}}, "habitat.traits.force.least"),
+        ({"force": {"most": 2.0}}, "habitat.traits.force.least"),
+        ({"force": 2}, "habitat.traits.force"),
+        ({}, "write a table for each trait"),
+    ],
+)
+def test_wrong_traits_are_refused(traits: Any, says: str) -> None:
+    with pytest.raises(InputError, match=r"habitat\.traits") as refused:
+        load("CartPole-survival", {"habitat": {"traits": traits}})
+    assert says in str(refused.value)
+
+
+def test_what_cannot_have_traits_says_so() -> None:
+    traits = {"force": {"least": 0.5, "most": 2.0}}
+    with pytest.raises(InputError, match="this habitat has none"):
+        load("CartPole-survival", {"habitat": {"name": "tests.toys:Mill", "traits": traits}})
+    islands = [{"name": "a"}, {"name": "b", "habitat": {"traits": traits}}]
+    with pytest.raises(InputError, match="all islands have the same traits"):
+        load("CartPole-survival", {"habitat": {"islands": islands}})
+
+
+WALKER = """<mujoco><worldbody><body name="box"><joint name="x" type="slide" axis="1 0 0"/>
+<geom name="box" size="0.1"/></body></worldbody>
+<actuator><motor name="push" joint="x" gear="2"/></actuator></mujoco>"""
+
+
+def boxes(folder: Path, adjustable: Any, traits: Any = None, **changes: Any) -> Any:
+    """Return boxes on a line with parameters of a user's own, which are traits; they eat their mass."""
+    pytest.importorskip("mujoco")
+    (folder / "box.xml").write_text(WALKER)
+    wide = {"least": 1e-5, "most": 100.0}
+    habitat = {
+        "name": "mujoco",
+        "file": str(folder / "box.xml"),
+        "adjustable": adjustable,
+        "food": "mass",
+        "traits": dict.fromkeys(adjustable, wide) if traits is None else traits,
+    }
+    return validated({"task": "box", "habitat": habitat, **changes}, "box").build_habitat()
+
+
+SIZE = {"size": ["geom.box.size"], "strength": ["actuator.push.gear[0]"]}
+
+
+def begun(habitat: Any, genes: list[list[float]]) -> Any:
+    """Return the habitat with bodies of these genes, at rest."""
+    habitat.open(len(genes))
+    words = np.zeros((len(genes), habitat.words), np.uint32)
+    words[:, : len(genes[0])] = np.array(genes, np.float32).view(np.uint32)
+    habitat.reset(np.arange(len(genes)), words)
+    return habitat
+
+
+def test_a_robot_has_the_size_and_strength_of_its_genes(tmp_path: Path) -> None:
+    habitat = begun(boxes(tmp_path, SIZE), [[0, 0], [1, 0], [0, 1]])
+    assert habitat.parameters[-2:] == ("size", "strength")
+    for _ in range(3):
+        senses, outcome = habitat.step(np.ones((3, 1), np.float32), np.ones(3, bool))
+    usual = 4 / 3 * np.pi * 0.1**3 * 1000
+    np.testing.assert_allclose(outcome.food, [usual, 8 * usual, usual], rtol=1e-5)
+    np.testing.assert_allclose(senses[:, 1] / senses[0, 1], [1, 1 / 8, 2], rtol=1e-5)
+    other = boxes(tmp_path, SIZE)
+    other.open(3)
+    other.load({name: array.copy() for name, array in habitat.save().items()})
+    both = [
+        each.step(np.ones((3, 1), np.float32), np.ones(3, bool))[0] for each in (habitat, other)
+    ]
+    np.testing.assert_array_equal(*both)
+
+
+def test_a_body_that_mujoco_refuses_fails_with_a_reason(tmp_path: Path) -> None:
+    """Its neighbour lives on, and so does the next body of the cell."""
+    habitat = begun(boxes(tmp_path, SIZE), [[-16, 0], [0, 0]])
+    outcome = habitat.step(np.zeros((2, 1), np.float32), np.ones(2, bool))[1]
+    assert outcome.fault.tolist() == [True, False]
+    assert "mass and inertia" in habitat.message(0)
+    assert habitat.message(1) == ""
+    habitat.reset(np.array([0]), np.zeros((1, habitat.words), np.uint32))
+    assert not habitat.step(np.zeros((2, 1), np.float32), np.ones(2, bool))[1].fault.any()
+
+
+def test_a_robot_with_the_founders_genes_is_the_usual_robot() -> None:
+    """To the last bit, also where lengths are traits."""
+    pytest.importorskip("mujoco")
+    traits = {name: {"least": 0.3, "most": 2.0} for name in ("thigh", "mass")}
+    own = {"adjustable": {"thigh": ["geom.bthigh.size[1]"]}, "traits": traits}
+    made: Any = load("HalfCheetah-forager", {"habitat": own}).build_habitat()
+    usual: Any = load("HalfCheetah-forager").build_habitat()
+    usual.open(2)
+    words = np.random.default_rng(2).integers(0, 2**32, (2, usual.words), np.uint32)
+    made.open(2)
+    made.reset(np.arange(2), np.concatenate([np.zeros((2, 2), np.uint32), words], axis=1))
+    usual.reset(np.arange(2), words)
+    for action in np.random.default_rng(3).normal(size=(30, 2, 6)).astype(np.float32):
+        both = [each.step(action, np.ones(2, bool))[0] for each in (made, usual)]
+        np.testing.assert_array_equal(*both)
+
+
+@pytest.mark.parametrize(
+    ("attribute", "says"),
+    [
+        ("geom.bo.size", "the model has no geom called 'bo'; did you mean 'box'?"),
+        ("geom.box", "write KIND.NAME.ATTRIBUTE"),
+        ("light.box.pos", "write KIND.NAME.ATTRIBUTE"),
+        ("geom.box.weight", "a geom has no numbers called 'weight'"),
+        ("geom.box.name", "a geom has no numbers called 'name'"),
+        ("geom.box.size[7]", "size of a geom has 3 numbers, from 0"),
+        ("geom.box.size[2]", "is not a number other than 0 in the file"),
+        ("geom.box.mass", "is not a number other than 0 in the file"),
+    ],
+)
+def test_wrong_attributes_are_refused(tmp_path: Path, attribute: str, says: str) -> None:
+    with pytest.raises(InputError, match=r"habitat.*adjustable.own") as refused:
+        boxes(tmp_path, {"own": [attribute]})
+    assert says in str(refused.value)
+
+
+def test_a_parameter_has_one_meaning(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="gravity is a parameter already"):
+        boxes(tmp_path, {"gravity": ["geom.box.size"]})
