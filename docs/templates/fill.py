@@ -248,6 +248,7 @@ def pages() -> dict[Path, str]:
         parts=reference.parts,
         changes=reference.changes,
         islands=reference.islands,
+        traits=reference.traits,
         seasons=reference.seasons,
     )
     filler.filters.update(number=number_text)

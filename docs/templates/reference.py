@@ -25,6 +25,7 @@ from primordia.habitats.change import (
     ReverseActions,
     Weaken,
 )
+from primordia.habitats.traits import Trait
 from primordia.law.seasons import Ratchet, Schedule
 from primordia.settings.base import SEASONAL
 from primordia.settings.fields import setting_fields
@@ -82,6 +83,11 @@ def changes() -> str:
 def islands() -> str:
     """Return a table of the settings of an island."""
     return _table(setting_fields(Island))
+
+
+def traits() -> str:
+    """Return a table of the settings of a trait."""
+    return _table(setting_fields(Trait))
 
 
 def _all(command: click.Command, path: str) -> Iterator[tuple[click.Command, str]]:

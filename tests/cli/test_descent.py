@@ -44,7 +44,7 @@ def ancestors(steps: list[dict[str, Any]], **other: Any) -> Any:
     values: dict[str, Any] = {
         "organism": 1234, "world": 2, "line": steps, "size": np.array([0.5, 0.25, 123.456, 0, np.nan]),
         "changes": np.zeros(0), "unknown": None, "common": None, "roots": 3, "step": steps.__getitem__,
-        "telling": lambda most: places[:most], "islands": None,
+        "telling": lambda most: places[:most], "islands": None, "traits": None,
     }  # fmt: skip
     return SimpleNamespace(**{**values, **other})
 
@@ -251,3 +251,11 @@ def test_the_files_of_each_figure_are_printed_apart_from_json(
     assert (done.stderr if as_json else done.stdout).splitlines() == lines
     if as_json:
         json.loads(done.stdout)
+
+
+def test_traits_are_columns_before_lives(shown: Shown) -> None:
+    steps = [step(0, "founder", traits={"leg": 1.0}), step(1, "mutant", traits={"leg": None})]
+    descent._show_ancestors(RUN, ancestors(steps, traits={"leg": np.ones(2)}))
+    assert shown["head"][2:5] == ["born", "leg", "lived"]
+    assert [row[3] for row in shown["rows"]] == ["1.00", "-"]
+    assert "leg: factors of the habitat's own parameters." in shown["notes"]

@@ -7,10 +7,14 @@ import numpy as np
 import pytest
 
 import primordia
+from primordia.figures.traits import draw
 from primordia.habitats.archipelago import joined
+from primordia.history.summary import summary
+from primordia.history.traits import EACH, course, factors_of
 from primordia.organism.playing.games import lifespans
 from primordia.organism.playing.players import players_of
 from primordia.organism.reliving.compare import relive
+from primordia.report.curves import panels
 from primordia.runs.archive import Archive
 from tests.engine.test_strange import digests, live_in_parts
 from tests.history.test_rebuilding import assert_rebuilt
@@ -102,3 +106,58 @@ def test_games_are_played_in_the_bodies_of_the_players(run: Path) -> None:
     genomes[:, -2:] = [[-2, -1], [0, 0], [2, 0], [2, 1]]
     lives = lifespans(players._replace(genomes=genomes), 300)
     assert len(set(lives.tolist())) > 1
+
+
+def test_traits_of_the_living_are_in_the_summary(run: Path) -> None:
+    opened, traits = Archive(run), config(POLES).traits
+    assert traits is not None
+    info = primordia.load(run).info()
+    for world, told in enumerate(info["worlds"]):
+        living = opened.lives.of_world(world)
+        rows = opened.lives.world.searchsorted(world) + np.flatnonzero(~living.died)
+        factors = factors_of(opened, traits, rows)
+        for number, name in enumerate(traits.names):
+            quartiles = np.quantile(factors[:, number], [0.25, 0.5, 0.75])
+            found = [told["traits"][name][each] for each in ("q1", "median", "q3")]
+            np.testing.assert_allclose(found, quartiles, rtol=1e-6)
+    for world in info["worlds"]:
+        assert f"living: pole x {world['traits']['pole']['median']:.3g} (" in summary(info)
+    assert "living, medians over worlds: pole x" in summary({**info, "worlds": 3 * info["worlds"]})
+
+
+def test_ancestors_have_traits_also_before_a_fork(run: Path, tmp_path: Path) -> None:
+    opened, traits = Archive(run), config(POLES).traits
+    assert traits is not None
+    fork = primordia.load(run).fork(200, tmp_path / "fork", stop={"ticks": TICKS})
+    lives = fork.opened().lives
+    organism = int(lives.id[(lives.world == 1) & ~lives.inherited][-1])
+    line = fork.ancestors(organism, 1)
+    old = line.line.born <= 200
+    assert 1 < old.sum() < len(old)
+    assert line.traits is not None
+    for where, source in ((old, opened), (~old, fork.opened())):
+        rows = [source.lives.row(int(number), 1) for number in line.line.id[where]]
+        factors = factors_of(source, traits, np.array(rows))
+        for number, name in enumerate(traits.names):
+            np.testing.assert_allclose(line.traits[name][where], factors[:, number], rtol=1e-6)
+    assert line.step(0)["traits"].keys() == {"pole", "gravity"}
+
+
+def test_traits_over_births_stand_beside_their_neutral_shadows(run: Path) -> None:
+    opened, traits = Archive(run), config(POLES).traits
+    assert traits is not None
+    found = course(opened)
+    assert found is not None
+    assert found.own.shape == found.shadows.shape == (2, 2, len(found.middle))
+    known = np.isfinite(found.own)
+    assert known.mean() > 0.8
+    assert ((found.own > [[[0.1]], [[0.5]]]) & (found.own < [[[4.0]], [[2.0]]]))[known].all()
+    assert not np.isclose(found.own, found.shadows).all(axis=(1, 2)).any()
+    first = np.flatnonzero((opened.lives.world == 1) & (opened.lives.rank < found.middle[0] * 2))
+    some = first[np.unique(np.linspace(0, len(first) - 1, EACH).astype(int))]
+    means = np.exp(np.log(factors_of(opened, traits, some).astype(float)).mean(axis=0))
+    np.testing.assert_allclose(found.own[:, 1, 0], means, rtol=1e-6)
+    assert "Trait: pole" in [each["title"] for each in panels(opened)]
+    figure = draw(opened, 0)
+    assert figure is not None
+    assert [axes.get_title() for axes in figure.axes] == ["pole", "gravity"]

@@ -128,7 +128,7 @@ def test_space_time_never_has_more_columns_than_a_screen(cells: int, shown: int)
     assert figure.axes[0].get_xlabel() == "cell of the ring" + some * (shown < cells)
 
 
-SOMETIMES = {"foraging", "threshold", "investment", "islands"}
+SOMETIMES = {"foraging", "threshold", "investment", "islands", "traits"}
 """Figures of runs in which one can starve, enough mutants were born, replication is an act, or there are
 islands."""
 

@@ -80,7 +80,12 @@ def stored() -> Any:
     every["world.organisms.born"] = np.array([890, 100, 600, 690, 0, 697], np.uint64)
     return SimpleNamespace(
         config=SimpleNamespace(
-            cells=3, metabolism=True, act=None, seasons=["any"], islands=Islands(("",), (0, 3))
+            cells=3,
+            metabolism=True,
+            act=None,
+            traits=None,
+            seasons=["any"],
+            islands=Islands(("",), (0, 3)),
         ),
         description=SimpleNamespace(tallies=("score", "kills"), rate=50.0),
         world_seeds=np.array([7, 2**63], np.uint64),

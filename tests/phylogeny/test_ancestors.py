@@ -50,7 +50,9 @@ def followed(lives: Lives, organism: int, monkeypatch: pytest.MonkeyPatch) -> An
 
     run = SimpleNamespace(
         lives=lives,
-        config=SimpleNamespace(fork=None, begins=0, islands=Islands(("",), (0, len(lives)))),
+        config=SimpleNamespace(
+            fork=None, begins=0, traits=None, islands=Islands(("",), (0, len(lives)))
+        ),
         layout=SimpleNamespace(names=["hidden", "output"]),
     )
     monkeypatch.setattr(descent, "run_of", lambda *_: (run, 0))
@@ -163,7 +165,7 @@ def test_places_of_a_table_are_the_largest_gains_and_evenly_spaced_others(count:
     assert max(np.diff(others)) <= 4 * count / 19
 
 
-def test_each_run_gives_the_changes_after_its_fork(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_each_run_gives_the_numbers_after_its_fork() -> None:
     """An organism born in the tick of a fork was born in the run that was forked."""
     born = [0, 10, 20, 30, 31, 45]
     line = lives_of([-1, 0, 1, 2, 3, 4], born, [50] * 6, [False] * 6)
@@ -187,22 +189,21 @@ def test_each_run_gives_the_changes_after_its_fork(monkeypatch: pytest.MonkeyPat
         asked[run.name] = organism
         return np.full((organism + 1, 1), float(len(run.name)))
 
-    monkeypatch.setattr(descent, "changes", sizes)
-    found, unknown = descent._changes(runs, line, 1)
+    found, unknown = descent._along(sizes, runs, line, 1)
     assert (asked, unknown) == ({"other": 5, "fork": 4, "run": 3}, None)
     assert found is not None
     assert found[:, 0].tolist() == [3, 3, 3, 3, 4, 5]
     asked.clear()
     young = lives_of([-1, 0], [41, 46], [50] * 2, [False] * 2)  # founded after both forks
-    descent._changes(runs, young, 1)
+    descent._along(sizes, runs, young, 1)
     assert asked == {"again": 1, "other": 0}
     untrusted.append("run")
-    found, unknown = descent._changes(runs, line, 1)
+    found, unknown = descent._along(sizes, runs, line, 1)
     assert unknown == "run is not trusted"
     assert found is not None
     assert found[4:, 0].tolist() == [4, 5]
     untrusted.append("other")
-    assert descent._changes(runs, line, 1) == (None, "other is not trusted")
+    assert descent._along(sizes, runs, line, 1) == (None, "other is not trusted")
 
 
 def test_plain_values_of_a_line_have_the_cause_of_each_death(

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from primordia.assays.subjects import GAMES, TICKS, Subjects
+from primordia.brains.layout import BODY
 from primordia.organism.playing.games import Players, lifespans_in_games
 from primordia.organism.playing.seats import Frozen
 
@@ -47,7 +48,8 @@ def ablate(
     """Let each subject live again: without senses, memory and plasticity, then without each block.
 
     Ablated senses keep their values from the start of each game. An ablated memory is zero in each
-    tick. A brain without plasticity has its inherited weights for life. Ablated weights are zero.
+    tick. A brain without plasticity has its inherited weights for life. Ablated weights are zero, and so
+    are the genes of an ablated body, which is then a founder's.
 
     Args:
         subjects: the organisms.
@@ -78,7 +80,8 @@ def _losses(subjects: Subjects, each_sense: bool) -> Iterator[_Loss]:
     for block in layout.names:
         kept = layout.split(players.genomes)
         kept[block] = np.zeros_like(kept[block])
-        yield _Loss(f"{block} weights", nothing, players._replace(genomes=layout.join(kept)))
+        name = "inherited body" if block == BODY else f"{block} weights"
+        yield _Loss(name, nothing, players._replace(genomes=layout.join(kept)))
     for sense in range(law.senses if each_sense else 0):
         senses = np.tile(np.arange(law.senses) == sense, (count, 1))
         yield _Loss(f"sense {sense}", nothing._replace(senses=senses), players)

@@ -112,6 +112,8 @@ def _show_ancestors(run: Path, found: "Ancestors") -> None:
     homes = () if found.islands is None else ("island", "migrations")
     if homes:
         notes.append("migrations: births up to this organism on another island than the parent's.")
+    if found.traits:
+        notes.append(f"{', '.join(found.traits)}: factors of the habitat's own parameters.")
     show_table(
         f"{run}: the line of organism {found.organism:,} of world {found.world}",
         (
@@ -119,6 +121,7 @@ def _show_ancestors(run: Path, found: "Ancestors") -> None:
             "line",
             "born",
             *homes,
+            *(found.traits or ()),
             "lived",
             "death",
             "children",
@@ -139,6 +142,7 @@ def _ancestor_row(found: "Ancestors", place: int) -> tuple[str, ...]:
         f"{step['organism']:,}",
         *(f"{step[name]:,}" for name in ("generation", "born")),
         *((step["island"], f"{step['migrations']:,}") if "island" in step else ()),
+        *(_number(factor, ".2f") for factor in step.get("traits", {}).values()),
         f"{step['lifespan']:,}",
         step["cause"] or "alive",
         f"{step['children']:,}",

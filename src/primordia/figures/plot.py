@@ -26,6 +26,7 @@ KNOWN = {
     "foraging": "primordia.figures.foraging:draw",
     "threshold": "primordia.figures.threshold:draw",
     "investment": "primordia.figures.investment:draw",
+    "traits": "primordia.figures.traits:draw",
     "islands": "primordia.figures.islands:draw",
 }
 Draw: TypeAlias = Callable[[Records, int], Figure | None]

@@ -8,6 +8,7 @@ import numpy as np
 from primordia.history.extinctions import extinctions_of
 from primordia.history.islands import on_islands
 from primordia.history.threshold import Threshold, threshold
+from primordia.history.traits import of_living
 from primordia.law.metabolism import ONE, break_even
 from primordia.law.world import Cause
 from primordia.runs.arrays import NEVER
@@ -32,7 +33,8 @@ def info(run: Records) -> dict[str, Any]:
     length, at the present rate of replication. If the number is below one, lineages die out. If
     replication is an act, it is the mean number of tries so far, and `act` counts the tries, those that
     failed, the children, and the energy invested in them. If worlds have islands, `islands` holds the
-    numbers of each; see `islands.OnIsland`. The fields of a single world also appear at the top level.
+    numbers of each; see `islands.OnIsland`. If bodies are inherited, `traits` holds median and quartiles
+    of the living's traits. The fields of a single world also appear at the top level.
     """
     config, progress = run.config, run.progress
     worlds = [
@@ -109,6 +111,8 @@ def _world(run: Records, world: int, crashed: int, limit: dict[str, Any]) -> dic
         numbers["act"] = _act(counted)
     if (tally := arrays.get(TALLY)) is not None and alive.any():
         numbers["tallies"] = _tallies(run.description.tallies, tally[here][alive])
+    if (traits := of_living(run, world)) is not None:
+        numbers["traits"] = traits
     if config.metabolism is not None:
         numbers["break_even"] = _break_even(arrays, world, run.description.rate)
     if config.seasons:

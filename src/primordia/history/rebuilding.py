@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from primordia.history import pedigree
+from primordia.history.traits import factors_of
 from primordia.law.world import BirthCause
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
@@ -62,3 +63,14 @@ def changes(run: Records, organism: int, world: int = 0) -> np.ndarray:
         found[1:, place] = np.sqrt(np.square(block, dtype=np.float64).sum(axis=axes))
     found[run.lives.inherited[rows]] = np.nan
     return found
+
+
+def bodies(run: Records, organism: int, world: int = 0) -> np.ndarray:
+    """Return the traits of each organism on a line of descent, as factors, float64 (D, T).
+
+    Raises:
+        InputError: no such organism was born, or the mutation is code that the user has not trusted.
+    """
+    assert run.config.traits is not None
+    rows = descent(run.lives, organism, world)
+    return factors_of(run, run.config.traits, rows).astype(float)

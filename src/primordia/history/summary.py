@@ -52,7 +52,7 @@ def _one_world(world: dict[str, Any]) -> list[str]:
         lines.append(f"    tallies of the living: {_tallies(world['tallies'])}")
     if world["fixation"]:
         lines.append(f"    one common ancestor since {_when(world['fixation'])}")
-    lines += _act([world]) + _threshold([world]) + _islands([world])
+    lines += _act([world]) + _traits([world]) + _threshold([world]) + _islands([world])
     if world["saturation"]:
         return [*lines, f"    saturated at {_when(world['saturation'])}"]
     return [*lines, "    not saturated"]
@@ -102,6 +102,21 @@ def _act(worlds: list[dict[str, Any]]) -> list[str]:
     return [f"    {tries:,} tries to copy, {failed:,} of them failed{given}"]
 
 
+def _traits(worlds: list[dict[str, Any]]) -> list[str]:
+    """Return a line with each trait of the living: median and quartiles, or medians over worlds."""
+    known = [world["traits"] for world in worlds if "traits" in world]
+    if not known:
+        return []
+    parts = []
+    for name, first in known[0].items():
+        middle = [each[name]["median"] for each in known]
+        spread = np.quantile(middle, [0.25, 0.5, 0.75]) if len(worlds) > 1 else first.values()
+        q1, median, q3 = spread
+        parts.append(f"{name} x {median:.3g} ({q1:.3g} to {q3:.3g})")
+    over = "" if len(worlds) == 1 else ", medians over worlds"
+    return [f"    traits of the living{over}: {', '.join(parts)}"]
+
+
 def _tallies(tallies: dict[str, dict[str, float]]) -> str:
     parts = [
         f"{name} {values['median']:,.0f} (best {values['best']:,})"
@@ -129,6 +144,7 @@ def _all_worlds(worlds: list[dict[str, Any]]) -> list[str]:
         f"    {_share(worlds, 'fixation', 'with one common ancestor')}",
         f"    {_share(worlds, 'saturation', 'saturated')}",
         *_act(worlds),
+        *_traits(worlds),
         *_threshold(worlds),
         *_islands(worlds),
     ]

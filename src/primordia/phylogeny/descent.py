@@ -1,7 +1,7 @@
 """The line of descent of an organism: its ancestors, their mutations, and how far each line spread."""
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any
@@ -11,7 +11,7 @@ import numpy as np
 from primordia.errors import InputError
 from primordia.history.ancestry import children, nearest
 from primordia.history.islands import names_of
-from primordia.history.rebuilding import changes, descent
+from primordia.history.rebuilding import bodies, changes, descent
 from primordia.law.world import BirthCause, Cause
 from primordia.phylogeny.coalescence import Genealogy
 from primordia.phylogeny.fixation import UNKNOWN, branches, first_ticks
@@ -67,6 +67,9 @@ class Ancestors:
     """the common ancestor of the living; None if there is none on record"""
     roots: int
     """number of roots of the living: ancestors without a parent on record"""
+    traits: dict[str, np.ndarray] | None = None
+    """each trait of the organisms' bodies, as a factor, float64 (D,), NaN where it is not known; None if
+    bodies are not inherited"""
     islands: list[str] | None = None
     """name of the island on which each organism was born, [D]; None if the worlds have no islands"""
 
@@ -132,6 +135,7 @@ class Ancestors:
         places = {}
         if self.islands is not None and self.migrations is not None:
             places = {"island": self.islands[place], "migrations": int(self.migrations[place])}
+        body = {name: _known(each[place]) for name, each in (self.traits or {}).items()}
         return {
             "generation": place,
             "organism": int(line.id[place]),
@@ -142,6 +146,7 @@ class Ancestors:
             "children": int(self.children[place]),
             "birth_cause": BirthCause(line.birth_cause[place]).label,
             **places,
+            **({"traits": body} if body else {}),
             "change": size and dict(zip(self.blocks, size, strict=True)),
             **{name: _happened(ticks[place]) for name, ticks in self.ticks.items()},
         }
@@ -171,7 +176,7 @@ def ancestors(run: Records, organism: int, world: int = 0, say: Say = warnings.w
     line = descent(lives, organism, own)
     turnover, branch = Turnover.of(lives), branches(lives.parent_row, line)
     ticks = first_ticks(turnover, branch, len(line), tuple(SHARES.values()))
-    known, unknown = _changes(runs, lives.take(line), own)
+    known, unknown = _along(changes, runs, lives.take(line), own)
     genealogy = Genealogy.of(lives)
     begin = max(int(lives.born[line[0]]), int(lives.seen.min()))
     return Ancestors(
@@ -187,6 +192,7 @@ def ancestors(run: Records, organism: int, world: int = 0, say: Say = warnings.w
         branch=branch,
         common=_common(genealogy),
         roots=len(genealogy.roots),
+        traits=_bodies(runs, lives.take(line), own),
         islands=_islands(runs, lives.take(line)),
     )
 
@@ -202,27 +208,46 @@ def _islands(runs: Sequence[Archive], line: Lives) -> list[str] | None:
     return found if any(found) else None
 
 
-def _changes(
-    runs: Sequence[Archive], line: Lives, world: int
+def _along(
+    of_run: Callable[[Records, int, int], np.ndarray],
+    runs: Sequence[Archive],
+    line: Lives,
+    world: int,
 ) -> tuple[np.ndarray | None, str | None]:
-    """Return the sizes of mutations on a line, and why some are unknown; each run gives its part.
+    """Return numbers of the organisms on a line, float64 (D, n), and why some are unknown.
 
-    Code of a run is executed only if the user has trusted the code.
+    Each run gives its part. Code of a run is executed only if the user has trusted the code.
+
+    Args:
+        of_run: returns the numbers of an organism of a run and of its ancestors.
+        runs: the run of the line, then those from which it was forked.
+        line: the line, the oldest first.
+        world: the world of the line.
     """
-    found, until = np.full((len(line), len(runs[0].layout.names)), np.nan), len(line)
+    found, until = None, len(line)
     for run in runs:
         before = int((line.born <= run.config.begins).sum())
         if before == until and run is not runs[-1]:
             continue  # all were alive at the run's fork, or are older
         try:
-            own = changes(run, int(line.id[until - 1]), world)
+            own = of_run(run, int(line.id[until - 1]), world)
         except InputError as error:
-            return None if until == len(line) else found, str(error)
+            return found, str(error)
+        if found is None:
+            found = np.full((len(line), own.shape[1]), np.nan)
         found[until - len(own) : until] = own
         if not before:
             break
         until = before
     return found, None
+
+
+def _bodies(runs: Sequence[Archive], line: Lives, world: int) -> dict[str, np.ndarray] | None:
+    """Return each trait of the organisms on a line, float64 (D,); None if none is known."""
+    if (traits := runs[0].config.traits) is None:
+        return None
+    found, _ = _along(bodies, runs, line, world)
+    return None if found is None else dict(zip(traits.names, found.T, strict=True))
 
 
 def _common(genealogy: Genealogy) -> CommonAncestor | None:

@@ -13,6 +13,7 @@ from primordia.figures.survival import COHORTS, alive_at, quarters
 from primordia.history import series
 from primordia.history.foraging import foraging
 from primordia.history.investment import investment
+from primordia.history.traits import course
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 
@@ -40,6 +41,7 @@ def panels(run: Records) -> list[Panel]:
         _survival(lives),
         *_foraging(run),
         *_investment(run),
+        *_traits(run),
         *_counts(run),
     ]
 
@@ -199,6 +201,23 @@ def _investment(run: Records) -> list[Panel]:
     about = "The mean energy that a child begins with, over births."
     tables = [over_worlds("endowment", found.middle, found.endowment, style.BLUE)]
     return [panel("Energy given to a child", about, "organisms born so far", "endowment", tables)]
+
+
+def _traits(run: Records) -> list[Panel]:
+    """Return each trait of the newborn and of their neutral shadows, if bodies are inherited."""
+    traits, found = run.config.traits, course(run)
+    if traits is None or found is None:
+        return []
+    panels = []
+    for name, own, shadows in zip(traits.names, found.own, found.shadows, strict=True):
+        about = f"The trait {name} of the newborn and of their neutral shadows, over births."
+        tables = [
+            over_worlds("neutral shadows", found.middle, shadows, style.ORANGE, each=False),
+            over_worlds("organisms", found.middle, own, style.BLUE),
+        ]
+        x = "organisms born so far"
+        panels.append(panel(f"Trait: {name}", about, x, "factor", tables, log_y=True))
+    return panels
 
 
 def _counts(run: Records) -> list[Panel]:

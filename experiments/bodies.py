@@ -1,0 +1,133 @@
+"""What bodies evolve? Traits of late-born organisms, of their neutral shadows and of founders.
+
+    python experiments/bodies.py experiments/bodies/pole-length.toml
+
+The experiment must have been run (`primordia experiment`). In each world EACH late-born organisms are
+taken. Their traits are factors of the founder's body, geometric means. Neutral shadows have the same
+pedigree and as many mutations, but no selection. Then the same organisms live again, GAMES games of at
+most TICKS ticks without accidents: in their own bodies, in the body of the founders, and so do founders.
+A table and a figure go to `results/` beside the file.
+"""
+
+from pathlib import Path
+
+import named
+import numpy as np
+import pandas as pd
+from by_world import Row, measure
+from matplotlib.figure import Figure
+
+from primordia.assays.subjects import spaced
+from primordia.brains.layout import BODY
+from primordia.comparison.pairs import sign_test
+from primordia.experiments.results import table
+from primordia.figures import style
+from primordia.history import pedigree
+from primordia.organism.playing.games import lifespans_in_games
+from primordia.organism.playing.players import founders_of, players_of
+from primordia.runs.records import Records
+
+EACH, GAMES, TICKS, LATE = 20, 3, 5_000, 0.5
+SHADOW, OWN, USUAL, FOUNDERS = "shadow of", "own body", "founder's body", "founders"
+NOTE = (
+    f"Traits: geometric means over {EACH} late-born organisms of a world, as factors of the founder's"
+    " body, of which that of a parameter is 1. Shadows are neutral."
+    f" Own body, founder's body: ticks that these organisms live in games of at most {TICKS:,} ticks."
+)
+
+
+def report(file: Path) -> None:
+    """Measure all arms of an experiment, and write the table and the figure."""
+    stem = measure(file, "traits", rows_of, NOTE)
+    rows = pd.read_csv(stem.with_suffix(".csv"))
+    text = stem.with_suffix(".md").read_text(encoding="utf-8")
+    stem.with_suffix(".md").write_text(f"{text.rstrip()}\n\n{_signs(rows)}\n", encoding="utf-8")
+    with style.applied():
+        style.save(drawn(rows), stem)
+    stem.with_suffix(".svg").unlink()
+
+
+def rows_of(run: Records) -> list[Row]:
+    """Return a row for each world."""
+    found = []
+    late = run.lives.late(LATE)
+    for world in range(run.config.seeds):
+        rows = spaced(np.flatnonzero(late & (run.lives.world == world)), EACH)
+        row: Row = {"seed": int(run.world_seeds[world]), **_traits(run, rows)}
+        row |= {name: round(float(ticks), 1) for name, ticks in _lives(run, rows).items()}
+        found.append(row)
+    return found
+
+
+def _traits(run: Records, rows: np.ndarray) -> Row:
+    """Return the mean of each trait of organisms, and of their neutral shadows."""
+    traits, found = run.config.traits, {}
+    assert traits is not None
+    for before, redrawn in (("", False), (f"{SHADOW} ", True)):
+        genes = run.layout.split(pedigree.genomes(run, rows, redrawn))[BODY]
+        means = np.exp(np.log(traits.factors(genes).astype(float)).mean(axis=0))
+        for name, mean in zip(traits.names, means.tolist(), strict=True):
+            found[before + name] = round(mean, 4)
+    return found
+
+
+def _lives(run: Records, rows: np.ndarray) -> dict[str, float]:
+    """Return how long organisms live in their own bodies and in the founder's, and founders, in ticks."""
+    numbers = zip(run.lives.id[rows].tolist(), run.lives.world[rows].tolist(), strict=True)
+    players = players_of(run, list(numbers))
+    usual = players.genomes.copy()
+    usual[:, -run.layout.genes :] = 0
+    world = run.lives.world[rows[:1]]
+    others = founders_of(run, world, np.array([EACH]))[2]
+    of = {OWN: players, USUAL: players._replace(genomes=usual), FOUNDERS: others}
+    return {name: lifespans_in_games(each, GAMES, TICKS).mean() for name, each in of.items()}
+
+
+def _signs(rows: pd.DataFrame) -> str:
+    """Return a table: in how many worlds of each arm a trait is farther from 1 than its shadow."""
+    lines: list[list] = []
+    names = [name.removeprefix(f"{SHADOW} ") for name in rows if name.startswith(SHADOW)]
+    for arm, worlds in rows.groupby("arm", sort=False):
+        for name in names:
+            own, shadow = worlds[name], worlds[f"{SHADOW} {name}"]
+            larger, smaller = int((own > shadow).sum()), int((own < shadow).sum())
+            p = sign_test(larger, smaller)
+            lines.append([arm, name, len(worlds), larger, smaller, f"{p:.2g}"])
+    head = ["arm", "trait", "worlds", "larger than its shadow", "smaller", "p (sign test)"]
+    return table(head, lines)
+
+
+def drawn(rows: pd.DataFrame) -> Figure:
+    """Draw each trait and its shadow in each world, and how long organisms live in their bodies."""
+    arms = list(dict.fromkeys(rows["arm"]))
+    names = [name.removeprefix(f"{SHADOW} ") for name in rows if name.startswith(SHADOW)]
+    figure = Figure(figsize=(style.PAGE, 2.8))
+    bodies, lives = figure.subplots(1, 2, width_ratios=(max(len(names), 1), len(arms)))
+    of = rows[rows["arm"] == arms[0]]
+    both = {"late-born": style.BLUE, "neutral shadows": style.SOFT}
+    columns = [[of[name], of[f"{SHADOW} {name}"]] for name in names]
+    _dots(bodies, names, columns, list(both.values()))
+    style.logarithmic(bodies.yaxis)
+    bodies.axhline(1, color=style.SOFT, zorder=0, linewidth=0.8)
+    bodies.set_ylabel("factor of the founder's body")
+    style.title(bodies, f"Traits, {arms[0]}", both)
+    three = {OWN: style.BLUE, USUAL: style.ORANGE, FOUNDERS: style.SOFT}
+    columns = [[rows.loc[rows["arm"] == arm, name] for name in three] for arm in arms]
+    _dots(lives, arms, columns, list(three.values()))
+    style.logarithmic(lives.yaxis)
+    lives.set_ylabel("ticks lived")
+    style.title(lives, "The same brains", three)
+    return figure
+
+
+def _dots(axes, groups: list[str], columns: list[list], colours: list[str]) -> None:
+    for place, of in enumerate(columns):
+        for number, (values, colour) in enumerate(zip(of, colours, strict=True)):
+            middle = place + (number - (len(of) - 1) / 2) * 0.8 / len(of)
+            x = middle + np.linspace(-0.1, 0.1, len(values))
+            axes.plot(x, np.sort(values), ".", color=colour, markersize=4, markeredgewidth=0)
+    axes.set_xticks(range(len(groups)), groups)
+
+
+if __name__ == "__main__":
+    named.for_each_named(report, __doc__)
