@@ -1,0 +1,110 @@
+"""Who fills the islands of an archipelago, who came from elsewhere, and are there generalists?
+
+    python experiments/archipelagos.py experiments/archipelago/minatar.toml
+
+The experiment must have been run (`primordia experiment`). In each world EACH late-born natives of each
+island live again on every island, GAMES games of at most TICKS ticks without accidents; so do as many
+founders. An organism masters an island if it lives there longer than the best of these founders. The
+line of one of the living is foreign if its ancestor at half of the ticks was born on another island. A
+table for each island and one for each world go to `results/` beside the file.
+"""
+
+from pathlib import Path
+
+import named
+import numpy as np
+from by_world import Row, measure
+
+from primordia.assays.subjects import spaced
+from primordia.assays.transplant import everywhere
+from primordia.organism.playing.players import founders_of, players_of
+from primordia.runs.records import Records
+
+EACH, GAMES, TICKS, LATE = 10, 2, 1_000, 0.5
+NOTE = (
+    f"Natives: ticks that {EACH} late-born natives of the island live there, in games of at most"
+    f" {TICKS:,} ticks. Best founder: the best of as many founders as there are natives of all islands."
+    " Foreigners: natives of the other islands. Masters: organisms that live longer than the best founder."
+    " Foreign lines: share of the living whose ancestor at half of the ticks was born on another island."
+)
+OF_WORLDS = (
+    f"Of {EACH} late-born natives of each island: the share that masters a number of islands, and the"
+    " largest number that one organism masters."
+)
+
+
+def report(file: Path) -> None:
+    """Measure all arms of an experiment, and write both tables."""
+    kept: dict[Path, list[_World]] = {}
+
+    def worlds(run: Records) -> list["_World"]:
+        if run.path not in kept:
+            kept[run.path] = [_World(run, world) for world in range(run.config.seeds)]
+        return kept[run.path]
+
+    measure(
+        file, "islands", lambda run: [row for each in worlds(run) for row in each.by_island()], NOTE
+    )
+    measure(file, "generalists", lambda run: [each.generality() for each in worlds(run)], OF_WORLDS)
+
+
+class _World:
+    """The late-born natives and the founders of a world, on every island."""
+
+    def __init__(self, run: Records, world: int) -> None:
+        self._run, self._world, islands = run, world, run.config.islands
+        lives = run.lives
+        late = np.flatnonzero(lives.late(LATE) & (lives.world == world))
+        home = islands.of_cells(lives.cell[late])
+        rows = np.concatenate([spaced(late[home == k], EACH) for k in range(islands.count)])
+        self.home = islands.of_cells(lives.cell[rows])
+        numbers = [(int(number), world) for number in lives.id[rows]]
+        self.lived = everywhere(run, players_of(run, numbers), world, GAMES, TICKS)
+        founders = founders_of(run, np.array([world]), np.array([len(rows)]))[2]
+        self.best = everywhere(run, founders, world, GAMES, TICKS).max(axis=0)
+        self.mastered = self.lived > self.best
+
+    @property
+    def seed(self) -> int:
+        """The seed of the world."""
+        return int(self._run.world_seeds[self._world])
+
+    def by_island(self) -> list[Row]:
+        """Return a row for each island."""
+        foreign = self._foreign()
+        found: list[Row] = []
+        for number, name in enumerate(self._run.config.islands.names):
+            here = self.home == number
+            natives, others = self.lived[here, number], self.lived[~here, number]
+            row = {
+                "natives": natives.mean(),
+                "best founder": self.best[number],
+                "natives / best founder": natives.mean() / self.best[number],
+                "foreigners": others.mean(),
+                "masters among natives": self.mastered[here, number].mean(),
+                "masters among foreigners": self.mastered[~here, number].mean(),
+                "foreign lines": foreign[number],
+            }
+            rounded = {key: round(float(value), 3) for key, value in row.items()}
+            found.append({"island": name, "seed": self.seed, **rounded})
+        return found
+
+    def generality(self) -> Row:
+        """Return how many islands natives master."""
+        count = self.mastered.sum(axis=1)
+        shares = {f"{k} or more": float((count >= k).mean()) for k in range(1, self.best.size + 1)}
+        return {"seed": self.seed, **shares, "most": int(count.max())}
+
+    def _foreign(self) -> np.ndarray:
+        """Return the share of each island's living whose line came from another island, float64 (K,)."""
+        lives, islands = self._run.lives, self._run.config.islands
+        living = np.flatnonzero(~lives.died & (lives.world == self._world))
+        line, half = living.copy(), int(lives.ended[living].max()) / 2
+        while (young := (lives.born[line] > half) & (lives.parent_row[line] >= 0)).any():
+            line[young] = lives.parent_row[line[young]]
+        now, then = islands.of_cells(lives.cell[living]), islands.of_cells(lives.cell[line])
+        return np.array([(then[now == k] != k).mean() for k in range(islands.count)])
+
+
+if __name__ == "__main__":
+    named.for_each_named(report, __doc__)
