@@ -23,9 +23,10 @@ from primordia.runs.records import Records
 EACH, GAMES, TICKS, LATE = 10, 2, 1_000, 0.5
 NOTE = (
     f"Natives: ticks that {EACH} late-born natives of the island live there, in games of at most"
-    f" {TICKS:,} ticks. Best founder: the best of as many founders as there are natives of all islands."
-    " Foreigners: natives of the other islands. Masters: organisms that live longer than the best founder."
-    " Foreign lines: share of the living whose ancestor at half of the ticks was born on another island."
+    f" {TICKS:,} ticks. Best founder: the best of as many founders as natives of all islands."
+    " Foreigners: natives of the other islands. Masters: organisms that live longer than the best"
+    " founder. Foreign lines: share of the living whose ancestor at half of the ticks was born on"
+    " another island."
 )
 OF_WORLDS = (
     f"Of {EACH} late-born natives of each island: the share that masters a number of islands, and the"

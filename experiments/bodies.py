@@ -3,7 +3,7 @@
     python experiments/bodies.py experiments/bodies/pole-length.toml
 
 The experiment must have been run (`primordia experiment`). In each world EACH late-born organisms are
-taken. Their traits are factors of the founder's body, geometric means. Neutral shadows have the same
+taken. Their traits are factors of the habitat's own body, geometric means. Neutral shadows have the same
 pedigree and as many mutations, but no selection. Then the same organisms live again, GAMES games of at
 most TICKS ticks without accidents: in their own bodies, in the body of the founders, and so do founders.
 A table and a figure go to `results/` beside the file.
@@ -30,9 +30,9 @@ from primordia.runs.records import Records
 EACH, GAMES, TICKS, LATE = 20, 3, 5_000, 0.5
 SHADOW, OWN, USUAL, FOUNDERS = "shadow of", "own body", "founder's body", "founders"
 NOTE = (
-    f"Traits: geometric means over {EACH} late-born organisms of a world, as factors of the founder's"
-    " body, of which that of a parameter is 1. Shadows are neutral."
-    f" Own body, founder's body: ticks that these organisms live in games of at most {TICKS:,} ticks."
+    f"Traits: geometric means over {EACH} late-born organisms of a world, as factors of the habitat's own"
+    f" body. Shadows are neutral. Own body, founder's body: ticks that these organisms live with it, in"
+    f" games of at most {TICKS:,} ticks. Founders: ticks that founders live."
 )
 
 
@@ -98,26 +98,34 @@ def _signs(rows: pd.DataFrame) -> str:
 
 
 def drawn(rows: pd.DataFrame) -> Figure:
-    """Draw each trait and its shadow in each world, and how long organisms live in their bodies."""
+    """Draw traits and their shadows in each world, and how long organisms live in their bodies."""
     arms = list(dict.fromkeys(rows["arm"]))
-    names = [name.removeprefix(f"{SHADOW} ") for name in rows if name.startswith(SHADOW)]
     figure = Figure(figsize=(style.PAGE, 2.8))
-    bodies, lives = figure.subplots(1, 2, width_ratios=(max(len(names), 1), len(arms)))
-    of = rows[rows["arm"] == arms[0]]
+    bodies, lives = figure.subplots(1, 2)
     both = {"late-born": style.BLUE, "neutral shadows": style.SOFT}
-    columns = [[of[name], of[f"{SHADOW} {name}"]] for name in names]
-    _dots(bodies, names, columns, list(both.values()))
+    names = [name.removeprefix(f"{SHADOW} ") for name in rows if name.startswith(SHADOW)]
+    groups = [(arm, name) for arm in arms for name in names if _evolves(rows, arm, name)]
+    if len(names) > 1:  # of several traits, those of the first arm
+        groups = groups[: len(names)]
+    columns = [
+        [rows.loc[rows["arm"] == arm, each] for each in (name, f"{SHADOW} {name}")]
+        for arm, name in groups
+    ]
+    _dots(bodies, [name if names[1:] else arm for arm, name in groups], columns, [*both.values()])
     style.logarithmic(bodies.yaxis)
-    bodies.axhline(1, color=style.SOFT, zorder=0, linewidth=0.8)
-    bodies.set_ylabel("factor of the founder's body")
-    style.title(bodies, f"Traits, {arms[0]}", both)
+    bodies.set_ylabel("factor of the habitat's own body")
+    style.title(bodies, f"Traits, {arms[0]}" if names[1:] else names[0], both)
     three = {OWN: style.BLUE, USUAL: style.ORANGE, FOUNDERS: style.SOFT}
     columns = [[rows.loc[rows["arm"] == arm, name] for name in three] for arm in arms]
     _dots(lives, arms, columns, list(three.values()))
     style.logarithmic(lives.yaxis)
     lives.set_ylabel("ticks lived")
-    style.title(lives, "The same brains", three)
+    style.title(lives, "Lives", three)
     return figure
+
+
+def _evolves(rows: pd.DataFrame, arm: str, name: str) -> bool:
+    return rows.loc[rows["arm"] == arm, name].nunique() > 1
 
 
 def _dots(axes, groups: list[str], columns: list[list], colours: list[str]) -> None:
