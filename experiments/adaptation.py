@@ -27,6 +27,7 @@ from primordia.comparison.pairs import sign_test
 from primordia.experiments.results import table
 from primordia.figures import style
 from primordia.history import pedigree
+from primordia.history.traits import factors_of
 from primordia.runs.records import Records
 
 EACH, GAMES, TICKS = 20, 3, 5_000
@@ -40,6 +41,7 @@ NOTE = (
     " Local / foreign and home / far end are ratios of these means. Adapted islands: those on which"
     " natives live longer than foreigners. Cline of a block of weights: share of"
     " the variance among natives that a straight line along the islands explains; shadows are neutral."
+    " Traits on the first and the last island: geometric means of factors."
 )
 
 
@@ -84,7 +86,7 @@ def _lives(each: Transplant) -> Row:
 
 
 def _clines(run: Records, world: int) -> Row:
-    """Return the strength of the cline in each block of weights, and of its neutral shadow."""
+    """Return the strength of the cline in each block and in its shadow, and traits at both ends."""
     lives, islands = run.lives, run.config.islands
     late = np.flatnonzero(lives.late(LATE) & (lives.world == world))
     home = islands.of_cells(lives.cell[late])
@@ -96,6 +98,12 @@ def _clines(run: Records, world: int) -> Row:
         blocks = run.layout.split(genomes)
         for block, weights in blocks.items():
             found[f"{name} {block}"] = round(_explained(place, weights.reshape(len(rows), -1)), 4)
+    if (traits := run.config.traits) is not None:
+        factors = factors_of(run, traits, rows)
+        for number, trait in enumerate(traits.names):
+            for end, island in (("first", 0), ("last", islands.count - 1)):
+                mean = np.exp(np.log(factors[place == island, number]).mean())
+                found[f"{trait}, {end} island"] = round(float(mean), 3)
     return found
 
 

@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any
 
+import jax
 import numpy as np
 import pytest
 from hypothesis import given
@@ -10,9 +11,10 @@ from hypothesis import strategies as some
 
 from primordia.compiled import shared
 from primordia.config import load, validated
+from primordia.envs import LifeEnv
 from primordia.errors import InputError
 from primordia.habitats.cartpole.habitat import CartPole
-from primordia.habitats.traits import Traits, traits_in
+from primordia.habitats.traits import Traits
 
 TRAITS = Traits.of(
     {
@@ -64,7 +66,6 @@ def test_a_trait_multiplies_all_its_parameters() -> None:
 
 def test_pictures_and_captions_show_traits() -> None:
     habitat = poles(**{"pole-length": {"least": 0.1, "most": 4.0}})
-    assert traits_in(habitat) == habitat.traits
     words = np.zeros((3, habitat.words), np.uint32)
     words[:, 0] = np.array([0, 1, -2], np.float32).view(np.uint32)
     bodies = habitat.reset(words)
@@ -77,9 +78,20 @@ def test_pictures_and_captions_show_traits() -> None:
     assert habitat.caption(seen[2], np.int32(1)) == "action 1, pole-length x 0.25"
 
 
-def _row(bodies: Any, row: int) -> Any:
-    import jax
+def test_an_environment_has_the_body_of_founders() -> None:
+    """It is that of a habitat with other parameters, from the same random words."""
+    traits = {"pole-length": {"least": 0.1, "most": 4.0, "founder": 0.5}}
+    seen = []
+    for habitat in ({"traits": traits}, {"factors": {"pole-length": 0.5}}, {}):
+        env = LifeEnv("CartPole-survival", {"habitat": habitat})
+        first = env.reset(seed=4)[0]
+        seen.append(np.stack([first, *(env.step(1)[0] for _ in range(4))]))
+    np.testing.assert_array_equal(seen[0], seen[1])
+    assert (seen[0][0] == seen[2][0]).all()
+    assert (seen[0][-1] != seen[2][-1]).any()
 
+
+def _row(bodies: Any, row: int) -> Any:
     return jax.tree.map(lambda leaf: np.asarray(leaf)[row], bodies)
 
 

@@ -21,7 +21,7 @@ from jax import Array
 from pydantic import Field, ValidationError, model_validator
 
 from primordia.errors import InputError
-from primordia.habitats.around import AroundHost, AroundJax, inside
+from primordia.habitats.around import AroundHost, AroundJax
 from primordia.habitats.checks import check_parameters
 from primordia.habitats.contract import AnyHabitat, Bodies, JaxHabitat, Outcome
 from primordia.settings.base import Settings
@@ -266,9 +266,3 @@ def with_traits(habitat: AnyHabitat, traits: Traits) -> AnyHabitat:
     if isinstance(habitat, JaxHabitat):
         return TraitsInJax(habitat, traits)
     return TraitsOnHost(habitat, traits)
-
-
-def traits_in(habitat: AnyHabitat) -> Traits | None:
-    """Return the traits of a habitat's bodies; None if bodies are not inherited."""
-    found = inside(habitat, _WithTraits)
-    return None if found is None else found.traits
