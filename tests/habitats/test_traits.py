@@ -1,5 +1,6 @@
 """Traits: factors from genes, bodies with these factors, pictures, and messages."""
 
+from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
@@ -158,6 +159,7 @@ def begun(habitat: Any, genes: list[list[float]]) -> Any:
 def test_a_robot_has_the_size_and_strength_of_its_genes(tmp_path: Path) -> None:
     habitat = begun(boxes(tmp_path, SIZE), [[0, 0], [1, 0], [0, 1]])
     assert habitat.parameters[-2:] == ("size", "strength")
+    assert deepcopy(boxes(tmp_path, SIZE).inner).parameters == habitat.parameters
     for _ in range(3):
         senses, outcome = habitat.step(np.ones((3, 1), np.float32), np.ones(3, bool))
     usual = 4 / 3 * np.pi * 0.1**3 * 1000

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -27,6 +27,7 @@ class Rules:
     motor: Any
     metabolism: str | None = "hunger"
     senses: int = 3
+    heredity: ClassVar[Any] = SimpleNamespace(layout=SimpleNamespace(genes=0))
 
 
 def played(ticks: list[list[int]], course: list[list[int]] | None = None) -> Games:

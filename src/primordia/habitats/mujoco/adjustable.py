@@ -64,11 +64,16 @@ class Adjustable:
         Raises:
             ValueError: an attribute is not in the model; the message says which.
         """
+        self._arguments = file, timestep, table, forces, textures
         self._spec = editable(file, forces, textures)
         self._finish = partial(finished, timestep=timestep)
         self._targets = [[_target(self._spec, n, each) for each in own] for n, own in table.items()]
         self.model = lru_cache(MODELS)(self._model)
         """`_model`, for factors that are kept"""
+
+    def __reduce__(self) -> tuple[type, tuple]:
+        """Copies read the model again, since an MjSpec cannot be copied with its owner."""
+        return type(self), self._arguments
 
     def _model(self, factors: tuple[float, ...]) -> Any:
         """Return the MjModel of a body.

@@ -92,7 +92,8 @@ class MuJoCo(HostHabitat, Settings):
     def _check_settings(self) -> "MuJoCo":
         assert self._sense_expressions
         assert self._observed is not None
-        assert self._adjusted
+        if self.adjustable:
+            assert self._adjusted
         if taken := set(self.adjustable) & set(physics.FIELDS):
             raise ValueError(
                 f"adjustable: {min(taken)} is a parameter already; choose another name"
