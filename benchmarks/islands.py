@@ -75,13 +75,13 @@ def against_islands_alone(names: tuple[str, ...] = tuple(WORLDS)) -> list[dict]:
         drawn = large.model_copy(update={"habitat": {**large.habitat, "islands": equal}})
         rows.append({
             "world": name,
-            **_compared("alone", [config], alone, ticks),
-            **_compared("equal_islands", [drawn], [large], ticks),
+            **compared("alone", [config], alone, ticks),
+            **compared("equal_islands", [drawn], [large], ticks),
         })  # fmt: skip
     return rows
 
 
-def _compared(about: str, one: list[Config], other: list[Config], ticks: int) -> dict[str, Any]:
+def compared(about: str, one: list[Config], other: list[Config], ticks: int) -> dict[str, Any]:
     """Return the seconds of some worlds, of others, and the ratios of pairs."""
     sides = [[Engine(each) for each in side] for side in (one, other)]
     for engine in chain(*sides):

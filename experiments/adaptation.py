@@ -18,15 +18,16 @@ from pathlib import Path
 import named
 import numpy as np
 import pandas as pd
-from by_world import Row, measure
+from by_world import Row, dots, illustrate, measure
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from primordia.assays.subjects import spaced
 from primordia.assays.transplant import Transplant, transplant
 from primordia.comparison.pairs import sign_test
 from primordia.experiments.results import table
 from primordia.figures import style
 from primordia.history import pedigree
+from primordia.history.series import spaced
 from primordia.history.traits import factors_of
 from primordia.runs.records import Records
 
@@ -47,13 +48,7 @@ NOTE = (
 
 def report(file: Path) -> None:
     """Measure all arms of an experiment, and write the table and the figure."""
-    stem = measure(file, "adaptation", rows_of, NOTE)
-    rows = pd.read_csv(stem.with_suffix(".csv"))
-    text = stem.with_suffix(".md").read_text(encoding="utf-8")
-    stem.with_suffix(".md").write_text(f"{text.rstrip()}\n\n{_signs(rows)}\n", encoding="utf-8")
-    with style.applied():
-        style.save(drawn(rows), stem)
-    stem.with_suffix(".svg").unlink()
+    illustrate(measure(file, "adaptation", rows_of, NOTE), drawn, signs)
 
 
 def rows_of(run: Records) -> list[Row]:
@@ -114,7 +109,7 @@ def _explained(place: np.ndarray, weights: np.ndarray) -> float:
     return float(np.square(x @ y).sum() / np.square(x).sum() / total) if total > 0 else 0.0
 
 
-def _signs(rows: pd.DataFrame) -> str:
+def signs(rows: pd.DataFrame) -> str:
     """Return a table: in how many worlds of each arm the cline of a block is stronger than its shadow."""
     lines: list[list] = []
     blocks = [name.removeprefix(f"{CLINE} ") for name in rows if name.startswith(CLINE)]
@@ -128,37 +123,29 @@ def _signs(rows: pd.DataFrame) -> str:
 
 
 def drawn(rows: pd.DataFrame) -> Figure:
-    """Draw natives' life at home, at the far end and of foreigners in each arm, and the clines."""
+    """Draw natives' life at home, at the far end and of foreigners, and the clines in each arm."""
     arms = list(dict.fromkeys(rows["arm"]))
-    figure = Figure(figsize=(style.PAGE, 2.8))
-    lives, clines = figure.subplots(1, 2, width_ratios=(1.2, 1))
+    figure = Figure(figsize=(style.PAGE, 5.2))
+    upper, lower = figure.subfigures(2, 1)
+    lives = upper.subplots()
     colours = {HOME: style.BLUE, FOREIGN: style.ORANGE, FAR: style.VERMILION}
-    _dots(lives, rows, arms, colours)
+    columns = [[rows.loc[rows["arm"] == arm, name] for name in colours] for arm in arms]
+    dots(lives, arms, columns, list(colours.values()))
     style.logarithmic(lives.yaxis)
     lives.set_ylabel("ticks lived")
     style.title(lives, "Natives born again", colours)
-    of_clines = rows[rows["arm"] == arms[0]]
-    blocks = [name.removeprefix(f"{CLINE} ") for name in rows if name.startswith(CLINE)]
-    both = {CLINE: style.BLUE, SHADOW: style.SOFT}
-    for shift, (kind, colour) in enumerate(both.items()):
-        for place, block in enumerate(blocks):
-            values = np.sort(of_clines[f"{kind} {block}"])
-            x = place + 0.36 * (shift - 0.5) + np.linspace(-0.12, 0.12, len(values))
-            clines.plot(x, values, ".", color=colour, markersize=4, markeredgewidth=0)
-    clines.set_xticks(range(len(blocks)), blocks)
-    clines.set(ylim=(0, None), ylabel="share of variance along the islands")
-    named_kinds = {"natives": style.BLUE, "neutral shadows": style.SOFT}
-    style.title(clines, f"Clines of weights, {arms[0]}", named_kinds)
+    panels = lower.subplots(1, len(arms), sharey=True, squeeze=False)[0]
+    for axes, (arm, worlds) in zip(panels, rows.groupby("arm", sort=False), strict=True):
+        _clines(axes, worlds)
+        style.title(axes, f"Clines, {arm}", {"natives": style.BLUE, "shadows": style.SOFT})
+    panels[0].set(ylim=(0, None), ylabel="variance along the islands")
     return figure
 
 
-def _dots(axes, rows: pd.DataFrame, arms: list[str], colours: dict[str, str]) -> None:
-    for place, arm in enumerate(arms):
-        for shift, (name, colour) in enumerate(colours.items()):
-            values = np.sort(rows.loc[rows["arm"] == arm, name])
-            x = place + 0.26 * (shift - 1) + np.linspace(-0.1, 0.1, len(values))
-            axes.plot(x, values, ".", color=colour, markersize=4, markeredgewidth=0)
-    axes.set_xticks(range(len(arms)), arms)
+def _clines(axes: Axes, worlds: pd.DataFrame) -> None:
+    blocks = [name.removeprefix(f"{CLINE} ") for name in worlds if name.startswith(CLINE)]
+    columns = [[worlds[f"{kind} {block}"] for kind in (CLINE, SHADOW)] for block in blocks]
+    dots(axes, blocks, columns, [style.BLUE, style.SOFT])
 
 
 if __name__ == "__main__":

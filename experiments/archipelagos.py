@@ -4,9 +4,10 @@
 
 The experiment must have been run (`primordia experiment`). In each world EACH late-born natives of each
 island live again on every island, GAMES games of at most TICKS ticks without accidents; so do as many
-founders. An organism masters an island if it lives there longer than the best of these founders. The
-line of one of the living is foreign if its ancestor at half of the ticks was born on another island. A
-table for each island and one for each world go to `results/` beside the file.
+founders. The best founder of an island plays FRESH other games, since it was lucky in those in which it
+was chosen. An organism masters an island if it lives there longer than this founder. The line of one of
+the living is foreign if its ancestor at half of the ticks was born on another island. A table for each
+island and one for each world go to `results/` beside the file.
 """
 
 from pathlib import Path
@@ -15,15 +16,19 @@ import named
 import numpy as np
 from by_world import Row, measure
 
-from primordia.assays.subjects import spaced
 from primordia.assays.transplant import everywhere
+from primordia.history.series import spaced
+from primordia.organism.playing.games import Players
 from primordia.organism.playing.players import founders_of, players_of
+from primordia.random.keys import Purpose, stream
+from primordia.random.wide import wide
 from primordia.runs.records import Records
 
-EACH, GAMES, TICKS, LATE = 10, 2, 1_000, 0.5
+EACH, GAMES, FRESH, TICKS, LATE = 10, 3, 10, 1_000, 0.5
 NOTE = (
     f"Natives: ticks that {EACH} late-born natives of the island live there, in games of at most"
-    f" {TICKS:,} ticks. Best founder: the best of as many founders as natives of all islands."
+    f" {TICKS:,} ticks. Best founder: the best of as many founders as natives of all islands, in"
+    f" {FRESH} other games than those in which it was chosen."
     " Foreigners: natives of the other islands. Masters: organisms that live longer than the best"
     " founder. Foreign lines: share of the living whose ancestor at half of the ticks was born on"
     " another island."
@@ -62,8 +67,17 @@ class _World:
         numbers = [(int(number), world) for number in lives.id[rows]]
         self.lived = everywhere(run, players_of(run, numbers), world, GAMES, TICKS)
         founders = founders_of(run, np.array([world]), np.array([len(rows)]))[2]
-        self.best = everywhere(run, founders, world, GAMES, TICKS).max(axis=0)
+        self.best = self._in_fresh_games(founders)
         self.mastered = self.lived > self.best
+
+    def _in_fresh_games(self, founders: Players) -> np.ndarray:
+        """Return the mean ticks that the best founder of each island lives there, float64 (K,)."""
+        run, world = self._run, self._world
+        chosen = everywhere(run, founders, world, GAMES, TICKS).argmax(axis=0)
+        seeds = wide(np.repeat(run.world_seeds[[world]], len(chosen)))
+        keys = stream(seeds, Purpose.REBIRTH, wide(chosen))
+        best = founders.take(chosen)._replace(keys=keys)
+        return np.diag(everywhere(run, best, world, FRESH, TICKS))
 
     @property
     def seed(self) -> int:

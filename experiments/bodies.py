@@ -1,11 +1,11 @@
-"""What bodies evolve? Traits of late-born organisms, of their neutral shadows and of founders.
+"""What bodies evolve? Traits of late-born organisms and of their neutral shadows.
 
     python experiments/bodies.py experiments/bodies/pole-length.toml
 
 The experiment must have been run (`primordia experiment`). In each world EACH late-born organisms are
 taken. Their traits are factors of the habitat's own body, geometric means. Neutral shadows have the same
 pedigree and as many mutations, but no selection. Then the same organisms live again, GAMES games of at
-most TICKS ticks without accidents: in their own bodies, in the body of the founders, and so do founders.
+most TICKS ticks without accidents, in their own bodies and in the body of founders. So do founders.
 A table and a figure go to `results/` beside the file.
 """
 
@@ -14,15 +14,15 @@ from pathlib import Path
 import named
 import numpy as np
 import pandas as pd
-from by_world import Row, measure
+from by_world import Row, dots, illustrate, measure
 from matplotlib.figure import Figure
 
-from primordia.assays.subjects import spaced
 from primordia.brains.layout import BODY
 from primordia.comparison.pairs import sign_test
 from primordia.experiments.results import table
 from primordia.figures import style
 from primordia.history import pedigree
+from primordia.history.series import spaced
 from primordia.organism.playing.games import lifespans_in_games
 from primordia.organism.playing.players import founders_of, players_of
 from primordia.runs.records import Records
@@ -38,13 +38,7 @@ NOTE = (
 
 def report(file: Path) -> None:
     """Measure all arms of an experiment, and write the table and the figure."""
-    stem = measure(file, "traits", rows_of, NOTE)
-    rows = pd.read_csv(stem.with_suffix(".csv"))
-    text = stem.with_suffix(".md").read_text(encoding="utf-8")
-    stem.with_suffix(".md").write_text(f"{text.rstrip()}\n\n{_signs(rows)}\n", encoding="utf-8")
-    with style.applied():
-        style.save(drawn(rows), stem)
-    stem.with_suffix(".svg").unlink()
+    illustrate(measure(file, "traits", rows_of, NOTE), drawn, signs)
 
 
 def rows_of(run: Records) -> list[Row]:
@@ -83,8 +77,8 @@ def _lives(run: Records, rows: np.ndarray) -> dict[str, float]:
     return {name: lifespans_in_games(each, GAMES, TICKS).mean() for name, each in of.items()}
 
 
-def _signs(rows: pd.DataFrame) -> str:
-    """Return a table: in how many worlds of each arm a trait is farther from 1 than its shadow."""
+def signs(rows: pd.DataFrame) -> str:
+    """Return a table: in how many worlds of each arm a trait is larger than its shadow."""
     lines: list[list] = []
     names = [name.removeprefix(f"{SHADOW} ") for name in rows if name.startswith(SHADOW)]
     for arm, worlds in rows.groupby("arm", sort=False):
@@ -111,13 +105,13 @@ def drawn(rows: pd.DataFrame) -> Figure:
         [rows.loc[rows["arm"] == arm, each] for each in (name, f"{SHADOW} {name}")]
         for arm, name in groups
     ]
-    _dots(bodies, [name if names[1:] else arm for arm, name in groups], columns, [*both.values()])
+    dots(bodies, [name if names[1:] else arm for arm, name in groups], columns, [*both.values()])
     style.logarithmic(bodies.yaxis)
     bodies.set_ylabel("factor of the habitat's own body")
     style.title(bodies, f"Traits, {arms[0]}" if names[1:] else names[0], both)
     three = {OWN: style.BLUE, USUAL: style.ORANGE, FOUNDERS: style.SOFT}
     columns = [[rows.loc[rows["arm"] == arm, name] for name in three] for arm in arms]
-    _dots(lives, arms, columns, list(three.values()))
+    dots(lives, arms, columns, list(three.values()))
     style.logarithmic(lives.yaxis)
     lives.set_ylabel("ticks lived")
     style.title(lives, "Lives", three)
@@ -126,15 +120,6 @@ def drawn(rows: pd.DataFrame) -> Figure:
 
 def _evolves(rows: pd.DataFrame, arm: str, name: str) -> bool:
     return rows.loc[rows["arm"] == arm, name].nunique() > 1
-
-
-def _dots(axes, groups: list[str], columns: list[list], colours: list[str]) -> None:
-    for place, of in enumerate(columns):
-        for number, (values, colour) in enumerate(zip(of, colours, strict=True)):
-            middle = place + (number - (len(of) - 1) / 2) * 0.8 / len(of)
-            x = middle + np.linspace(-0.1, 0.1, len(values))
-            axes.plot(x, np.sort(values), ".", color=colour, markersize=4, markeredgewidth=0)
-    axes.set_xticks(range(len(groups)), groups)
 
 
 if __name__ == "__main__":

@@ -19,13 +19,13 @@ import jax.numpy as jnp
 import named
 import numpy as np
 import pandas as pd
-from by_world import Row, measure
+from by_world import Row, illustrate, measure
 from matplotlib.figure import Figure
 from plasticity import learning, memories, players_of
 
-from primordia.assays.subjects import spaced
 from primordia.figures import style
 from primordia.habitats.contract import AnyHabitat
+from primordia.history.series import spaced
 from primordia.law.law import Law
 from primordia.organism.playing.games import Players, lifespans
 from primordia.runs.records import Records
@@ -54,10 +54,7 @@ NOTE = (
 
 def report(file: Path) -> None:
     """Measure all arms of an experiment, and write the table and the figure."""
-    stem = measure(file, "innate", rows_of, NOTE)
-    with style.applied():
-        style.save(drawn(pd.read_csv(stem.with_suffix(".csv"))), stem)
-    stem.with_suffix(".svg").unlink()
+    illustrate(measure(file, "innate", rows_of, NOTE), drawn)
 
 
 def rows_of(run: Records) -> list[Row]:

@@ -91,3 +91,12 @@ def test_equal_layouts_are_one_value() -> None:
 def test_impossible_blocks_are_refused(blocks: tuple, says: str) -> None:
     with pytest.raises(InputError, match=f"^brain: .*{says}"):
         Layout(blocks)
+
+
+def test_only_a_layout_with_traits_has_genes_of_a_body() -> None:
+    """A brain may have a block of that name if its world has no traits."""
+    own = Layout((("body", (3, 2)), ("output", (4,))))
+    assert (own.genes, LAYOUT.with_body(3).genes) == (0, 3)
+    assert LAYOUT.with_body(3).names[-1] == "body"
+    with pytest.raises(InputError, match="'body' has the name of the block of a body's genes"):
+        own.with_body(1)

@@ -7,8 +7,12 @@ import numpy as np
 import pytest
 
 import primordia
+from primordia.assays.ablate import _losses
+from primordia.assays.subjects import of_run
 from primordia.figures.traits import draw
 from primordia.habitats.archipelago import joined
+from primordia.history import traits as history
+from primordia.history.series import spaced
 from primordia.history.summary import summary
 from primordia.history.traits import EACH, course, factors_of
 from primordia.organism.playing.games import lifespans
@@ -73,6 +77,21 @@ def test_a_habitat_on_the_host_lives_the_same_lives(lived: Lived) -> None:
         mine, other = lived.table(name), hosted.table(name)
         for column, values in mine.items():
             np.testing.assert_array_equal(values, other[column], column)
+    _assert_reborn_with_their_traits(hosted)
+
+
+def _assert_reborn_with_their_traits(lived: Lived) -> None:
+    """Bodies that cannot be saved are reset with the genes of their owners."""
+    state, habitat = lived.engine.state, lived.engine.habitat
+    alive, sizes = np.asarray(state.world.organisms.alive), config(POLES).islands.sizes
+    saved = [habitat.save()]
+    lived.engine.chunks._reset_to_birth(state.world, np.asarray(state.bodies))
+    saved.append(habitat.save())
+    before, after = (
+        np.asarray(joined([each[f"island.{number}.traits"] for number in range(2)], sizes))[alive]
+        for each in saved
+    )
+    np.testing.assert_array_equal(before, after)
 
 
 def test_the_living_and_the_dead_live_again_in_their_bodies(run: Path, tmp_path: Path) -> None:
@@ -106,6 +125,12 @@ def test_games_are_played_in_the_bodies_of_the_players(run: Path) -> None:
     genomes[:, -2:] = [[-2, -1], [0, 0], [2, 0], [2, 1]]
     lives = lifespans(players._replace(genomes=genomes), 300)
     assert len(set(lives.tolist())) > 1
+
+
+def test_the_loss_of_an_inherited_body_has_its_name(run: Path) -> None:
+    names = [loss.name for loss in _losses(of_run(Archive(run)), each_sense=False)]
+    assert names[-1] == "inherited body"
+    assert "output weights" in names
 
 
 def test_traits_of_the_living_are_in_the_summary(run: Path) -> None:
@@ -143,7 +168,10 @@ def test_ancestors_have_traits_also_before_a_fork(run: Path, tmp_path: Path) -> 
     assert line.step(0)["traits"].keys() == {"pole", "gravity"}
 
 
-def test_traits_over_births_stand_beside_their_neutral_shadows(run: Path) -> None:
+def test_traits_over_births_stand_beside_their_neutral_shadows(
+    run: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(history, "BINS", 4)
     opened, traits = Archive(run), config(POLES).traits
     assert traits is not None
     found = course(opened)
@@ -154,7 +182,8 @@ def test_traits_over_births_stand_beside_their_neutral_shadows(run: Path) -> Non
     assert ((found.own > [[[0.1]], [[0.5]]]) & (found.own < [[[4.0]], [[2.0]]]))[known].all()
     assert not np.isclose(found.own, found.shadows).all(axis=(1, 2)).any()
     first = np.flatnonzero((opened.lives.world == 1) & (opened.lives.rank < found.middle[0] * 2))
-    some = first[np.unique(np.linspace(0, len(first) - 1, EACH).astype(int))]
+    assert len(first) > EACH
+    some = spaced(first, EACH)
     means = np.exp(np.log(factors_of(opened, traits, some).astype(float)).mean(axis=0))
     np.testing.assert_allclose(found.own[:, 1, 0], means, rtol=1e-6)
     assert "Trait: pole" in [each["title"] for each in panels(opened)]

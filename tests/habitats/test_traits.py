@@ -77,6 +77,22 @@ def test_pictures_and_captions_show_traits() -> None:
     assert habitat.picture(seen[0], np.int32(1)).tobytes() == usual.tobytes()
     assert red[2] < red[0] < red[1]
     assert habitat.caption(seen[2], np.int32(1)) == "action 1, pole-length x 0.25"
+    twice = np.where(np.array(CartPole.parameters) == "pole-length", 2, 1)
+    doubled = habitat.picture_scaled(seen[0], np.int32(1), twice)
+    assert doubled.tobytes() == habitat.picture(seen[1], np.int32(1)).tobytes()
+    scaled: Any = load(
+        "CartPole-survival", {"habitat": {"factors": {"pole-length": 2.0}}}
+    ).build_habitat()
+    assert scaled.picture(seen[0].inner, np.int32(1)).tobytes() == doubled.tobytes()
+    halves = {"kind": "parameter", "of": "pole-length", "range": [0.5, 0.5], "at": [1]}
+    changed: Any = load("CartPole-survival", {"habitat": {"change": [halves]}}).build_habitat()
+    after, _ = changed.step(
+        changed.reset(np.zeros((1, changed.words), np.uint32)), np.zeros(1, int)
+    )
+    one = jax.tree.map(lambda leaf: np.asarray(leaf)[0], after)
+    half = changed.inner.picture_scaled(one.inner, np.int32(1), np.float32([1, 0.5, 1, 1, 1]))
+    assert changed.picture(one, np.int32(1)).tobytes() == half.tobytes()
+    assert half.tobytes() != changed.inner.picture(one.inner, np.int32(1)).tobytes()
 
 
 def test_an_environment_has_the_body_of_founders() -> None:
@@ -174,6 +190,26 @@ def test_a_robot_has_the_size_and_strength_of_its_genes(tmp_path: Path) -> None:
     np.testing.assert_array_equal(*both)
 
 
+def test_mass_is_that_of_the_body_that_evolves(tmp_path: Path) -> None:
+    """Also if it is one of MuJoCo's own parameters."""
+    habitat = begun(boxes(tmp_path, {}, {"mass": {"least": 0.5, "most": 2.0}}), [[0], [1]])
+    outcome = habitat.step(np.zeros((2, 1), np.float32), np.ones(2, bool))[1]
+    np.testing.assert_allclose(outcome.food[1] / outcome.food[0], 2, rtol=1e-5)
+
+
+def test_a_robot_is_drawn_with_its_own_model(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Seen:
+        def __init__(self, model: Any) -> None:
+            self.draw = lambda qpos: model
+
+    habitat = begun(boxes(tmp_path, SIZE), [[1, 0]])
+    monkeypatch.setattr("primordia.habitats.mujoco.picture.Renderer", Seen)
+    drawn = habitat.picture(_row(habitat.seen(), 0), np.zeros(1, np.float32))
+    np.testing.assert_allclose(drawn.geom_size[0, 0], 0.2, rtol=1e-6)
+
+
 def test_a_body_that_mujoco_refuses_fails_with_a_reason(tmp_path: Path) -> None:
     """Its neighbour lives on, and so does the next body of the cell."""
     habitat = begun(boxes(tmp_path, SIZE), [[-16, 0], [0, 0]])
@@ -192,6 +228,7 @@ def test_a_robot_with_the_founders_genes_is_the_usual_robot() -> None:
     own = {"adjustable": {"thigh": ["geom.bthigh.size[1]"]}, "traits": traits}
     made: Any = load("HalfCheetah-forager", {"habitat": own}).build_habitat()
     usual: Any = load("HalfCheetah-forager").build_habitat()
+    assert made.original().traits == made.traits
     usual.open(2)
     words = np.random.default_rng(2).integers(0, 2**32, (2, usual.words), np.uint32)
     made.open(2)

@@ -80,7 +80,8 @@ def _losses(subjects: Subjects, each_sense: bool) -> Iterator[_Loss]:
     for block in layout.names:
         kept = layout.split(players.genomes)
         kept[block] = np.zeros_like(kept[block])
-        name = "inherited body" if block == BODY else f"{block} weights"
+        is_body = layout.genes and block == BODY
+        name = "inherited body" if is_body else f"{block} weights"
         yield _Loss(name, nothing, players._replace(genomes=layout.join(kept)))
     for sense in range(law.senses if each_sense else 0):
         senses = np.tile(np.arange(law.senses) == sense, (count, 1))

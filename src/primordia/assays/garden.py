@@ -10,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from primordia.assays.subjects import GAMES, TICKS, Subjects, of_run, spaced
+from primordia.assays.subjects import GAMES, TICKS, Subjects, of_run
 from primordia.errors import InputError
 from primordia.history.islands import late_born
+from primordia.history.series import spaced
 from primordia.organism.playing.games import lifespans_in_games
 from primordia.organism.playing.players import founders_of
 from primordia.runs.lives import LATE

@@ -10,9 +10,10 @@ from typing import Any
 import jax.numpy as jnp
 import numpy as np
 
-from primordia.assays.subjects import GAMES, TICKS, spaced
+from primordia.assays.subjects import GAMES, TICKS
 from primordia.assays.transplant import everywhere, islands_of, plain
 from primordia.history.rebuilding import descent
+from primordia.history.series import spaced
 from primordia.law.world import BirthCause
 from primordia.organism.playing.players import founders_of, players_of
 from primordia.random.keys import Purpose, stream

@@ -14,13 +14,13 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from primordia.assays.subjects import spaced
 from primordia.comparison.pairs import sign_test
 from primordia.comparison.resample import LEAST, interval, resamples
 from primordia.errors import InputError
 from primordia.history import pedigree
 from primordia.history.climate import PastClimate
 from primordia.history.islands import born_on
+from primordia.history.series import spaced
 from primordia.law.metabolism import Rates
 from primordia.organism.playing.games import Players, lifespans
 from primordia.random.keys import Purpose, stream

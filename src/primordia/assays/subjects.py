@@ -190,12 +190,6 @@ def founders(chosen: Config, count: int) -> np.ndarray:
     return np.asarray(heredity.mutation.founders(heredity.layout, draws))
 
 
-def spaced(rows: np.ndarray, most: int) -> np.ndarray:
-    """Return at most `most` of the rows, each in the middle of one of equal parts, int64."""
-    parts = min(most, len(rows))
-    return rows[((np.arange(parts) + 0.5) * len(rows) / parts).astype(int)]
-
-
 def _fresh(
     source: str, chosen: Config, number: np.ndarray, own: np.ndarray, *, key: np.ndarray
 ) -> Subjects:

@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from primordia.assays.subjects import GAMES, TICKS, spaced
+from primordia.assays.subjects import GAMES, TICKS
 from primordia.errors import InputError
+from primordia.history.series import spaced
 from primordia.organism.playing.games import Players, lifespans_in_games
 from primordia.organism.playing.players import founders_of, moved, players_of
 from primordia.progress import steps

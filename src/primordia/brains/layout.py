@@ -31,6 +31,8 @@ class Layout:
     """
 
     blocks: tuple[tuple[str, Shape], ...]
+    genes: int = 0
+    """the number of a body's genes, in a last block BODY; 0 if bodies are not inherited"""
 
     def __post_init__(self) -> None:
         if not self.blocks:
@@ -60,11 +62,6 @@ class Layout:
         """P, the number of weights of one organism."""
         return int(self.sizes.sum())
 
-    @property
-    def genes(self) -> int:
-        """The number of a body's genes; 0 if bodies are not inherited."""
-        return prod(dict(self.blocks).get(BODY, (0,)))
-
     def with_body(self, genes: int) -> "Layout":
         """Return the layout with this number of genes of a body, after the blocks of a brain.
 
@@ -76,7 +73,7 @@ class Layout:
                 f"brain: its block {BODY!r} has the name of the block of a body's genes; rename it,"
                 " or remove habitat.traits"
             )
-        return Layout((*self.blocks, (BODY, (genes,))))
+        return Layout((*self.blocks, (BODY, (genes,))), genes)
 
     def flat(self, genome: Mapping[str, Array], cells: Array) -> Array:
         """Return the flat genomes of the organisms in some cells, (K, P).

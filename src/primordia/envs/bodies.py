@@ -69,8 +69,9 @@ class Bodies:
         if not len(cells):
             return
         keys = stream(wide(births.seeds.astype(np.uint64)), Purpose.BODY, wide(births.ticks))
-        cells_of, none = jnp.asarray(births.cells, jnp.int32), None  # a policy has no genes
-        words = words_of(self.law, none, keys, cells_of, self.habitat.words)
+        places = jnp.asarray(births.cells, jnp.int32)
+        # A policy has no genes, so it has the founders' body.
+        words = words_of(self.law, None, keys, places, self.habitat.words)
         self.senses[cells] = self.habitat.reset(cells, np.asarray(words))
         energy, eaten = (np.array(each) for each in self._vitals)
         energy[cells], eaten[cells] = self._store[cells], 0

@@ -31,7 +31,7 @@ class _Scaled:
 
     def picture(self, body: Bodies, action: np.ndarray) -> "Image":
         """Return a picture of a body with these parameters."""
-        return self.inner.picture_scaled(body, action, self._factors)
+        return self.picture_scaled(body, action, np.ones(1, np.float32))
 
     def picture_scaled(self, body: Bodies, action: np.ndarray, factors: np.ndarray) -> "Image":
         """Return a picture of a body whose parameters change by further factors, float32 (P,)."""

@@ -178,8 +178,7 @@ class _WithTraits:
 
     def picture(self, body: Shaped, action: np.ndarray) -> "Image":
         """Return a picture of the body with its traits."""
-        factors = self._columns(np.asarray(body.traits)[None])[0]
-        return self.inner.picture_scaled(body.inner, action, factors)
+        return self.picture_scaled(body, action, np.ones(1, np.float32))
 
     def picture_scaled(self, body: Shaped, action: np.ndarray, factors: np.ndarray) -> "Image":
         """Return a picture of the body with its traits, times further factors, float32 (P,)."""

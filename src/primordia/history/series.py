@@ -104,3 +104,9 @@ def _lived_by(start: np.ndarray, edges: np.ndarray) -> np.ndarray:
 def _sum_first(values: np.ndarray, counts: np.ndarray) -> np.ndarray:
     """Return the sum of the first `count` values for each of `counts`."""
     return np.append(0, np.cumsum(values))[counts]
+
+
+def spaced(rows: np.ndarray, most: int) -> np.ndarray:
+    """Return at most `most` of the rows, each in the middle of one of equal parts, int64."""
+    parts = min(most, len(rows))
+    return rows[((np.arange(parts) + 0.5) * len(rows) / parts).astype(int)]

@@ -7,6 +7,7 @@ import numpy as np
 from primordia.brains.layout import BODY
 from primordia.habitats.traits import Traits
 from primordia.history import pedigree
+from primordia.history.series import spaced
 from primordia.runs.records import Records
 
 BINS, EACH = 25, 12
@@ -59,28 +60,23 @@ def course(run: Records) -> Course | None:
     lives = run.lives
     longest = int(lives.rank.max()) + 1
     edges = np.linspace(0, longest, min(BINS, longest) + 1)
-    place = np.searchsorted(edges, lives.rank, side="right") - 1
-    rows = [
-        _some(np.flatnonzero((place == number) & (lives.world == world) & ~lives.inherited))
-        for world in range(lives.worlds)
-        for number in range(len(edges) - 1)
-    ]
+    own = np.flatnonzero(~lives.inherited)
+    bins = np.searchsorted(edges, lives.rank[own], side="right") - 1
+    place = lives.world[own].astype(np.int64) * (len(edges) - 1) + bins
+    order = np.argsort(place, kind="stable")
+    borders = np.searchsorted(place[order], np.arange(1, lives.worlds * (len(edges) - 1)))
+    rows = [spaced(each, EACH) for each in np.split(own[order], borders)]
+    ends = np.cumsum([len(each) for each in rows])
     shape = len(traits.names), lives.worlds, len(edges) - 1
     found = []
     for redrawn in (False, True):
         logs = np.log(factors_of(run, traits, np.concatenate(rows), redrawn).astype(float))
-        ends = np.cumsum([len(each) for each in rows])
         means = [
             each.mean(axis=0) if len(each) else _unknown(traits)
             for each in np.split(logs, ends[:-1])
         ]
         found.append(np.exp(np.array(means)).T.reshape(shape))
     return Course((edges[:-1] + edges[1:]) / 2, *found)
-
-
-def _some(rows: np.ndarray) -> np.ndarray:
-    """Return at most EACH rows, evenly spaced."""
-    return rows[np.unique(np.linspace(0, len(rows) - 1, EACH).astype(int))] if len(rows) else rows
 
 
 def _unknown(traits: Traits) -> np.ndarray:

@@ -184,7 +184,9 @@ class Records:
     @cached_property
     def layout(self) -> Layout:
         """The layout of genomes."""
-        return Layout(tuple(self.description.blocks.items()))
+        traits = self.config.traits
+        genes = len(traits.names) if traits else 0
+        return Layout(tuple(self.description.blocks.items()), genes)
 
     @cached_property
     def count(self) -> Callable[[str], np.ndarray]:

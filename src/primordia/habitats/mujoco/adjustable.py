@@ -6,7 +6,7 @@ A body whose parameters differ has a model of its own, which MuJoCo compiles fro
 
 import re
 from collections.abc import Mapping
-from functools import lru_cache, partial
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,8 +25,6 @@ KINDS = {
 }
 """Kinds of elements, and the name of the list of all elements of a kind in MjSpec."""
 TARGET = re.compile(rf"({'|'.join(KINDS)})\.(.+)\.([a-z_]+)(?:\[(\d)\])?")
-MODELS = 1024
-"""number of models kept; equal bodies share one"""
 
 
 class Target(NamedTuple):
@@ -64,18 +62,11 @@ class Adjustable:
         Raises:
             ValueError: an attribute is not in the model; the message says which.
         """
-        self._arguments = file, timestep, table, forces, textures
         self._spec = editable(file, forces, textures)
         self._finish = partial(finished, timestep=timestep)
         self._targets = [[_target(self._spec, n, each) for each in own] for n, own in table.items()]
-        self.model = lru_cache(MODELS)(self._model)
-        """`_model`, for factors that are kept"""
 
-    def __reduce__(self) -> tuple[type, tuple]:
-        """Copies read the model again, since an MjSpec cannot be copied with its owner."""
-        return type(self), self._arguments
-
-    def _model(self, factors: tuple[float, ...]) -> Any:
+    def model(self, factors: tuple[float, ...]) -> Any:
         """Return the MjModel of a body.
 
         Args:

@@ -36,8 +36,8 @@ from primordia.settings.base import Settings
 if TYPE_CHECKING:
     from PIL.Image import Image
 
-RENDERERS = 4
-"""number of bodies for which the means to draw them are kept"""
+MODELS, RENDERERS = 1024, 4
+"""number of bodies whose model is kept, and of bodies for which the means to draw them are kept"""
 
 
 class MuJoCo(HostHabitat, Settings):
@@ -93,7 +93,7 @@ class MuJoCo(HostHabitat, Settings):
         assert self._sense_expressions
         assert self._observed is not None
         if self.adjustable:
-            assert self._adjusted
+            assert self._model_of
         if taken := set(self.adjustable) & set(physics.FIELDS):
             raise ValueError(
                 f"adjustable: {min(taken)} is a parameter already; choose another name"
@@ -239,16 +239,19 @@ class MuJoCo(HostHabitat, Settings):
         for cell, row in zip(cells.tolist(), factors.tolist(), strict=True):
             self._refused.pop(cell, None)
             try:
-                self._models[cell] = self._adjusted.model(tuple(row))
+                self._models[cell] = self._model_of(tuple(row))
             except ValueError as error:
                 self._models[cell] = self._model
                 self._refused[cell] = " ".join(str(error).split())
         self._bodies.batch.set_models(self._models)
 
     @cached_property
-    def _adjusted(self) -> Adjustable:
+    def _model_of(self) -> Any:
+        """The function that returns the model of a body from its factors; equal bodies share one."""
         forces = "cfrc_ext" in self._observed
-        return Adjustable(self.file, self.timestep, self.adjustable, forces)
+        return lru_cache(MODELS)(
+            Adjustable(self.file, self.timestep, self.adjustable, forces).model
+        )
 
     def message(self, cell: int) -> str:
         """Return why MuJoCo refused a body; "" for a simulation that failed."""
