@@ -10,8 +10,8 @@ import hashlib
 import os
 import shutil
 import stat
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from itertools import takewhile
 from pathlib import Path
 from typing import Any
@@ -43,6 +43,15 @@ def is_plain(part: str) -> bool:
     return part not in ("", ".", "..") and part.isprintable() and not set(part) & set('\\:*?"<>|')
 
 
+@contextmanager
+def writing(path: Path) -> Iterator[None]:
+    """Raise Trouble, which names the path, if the `with` block fails to write (disk full, ...)."""
+    try:
+        yield
+    except OSError as error:
+        raise Trouble(f"{path} cannot be written: {error.strerror or error}") from None
+
+
 def write(path: Path, fill: Callable[[Path], object]) -> None:
     """Write the file `path`: `fill` writes a temporary file, which is then renamed.
 
@@ -57,7 +66,7 @@ def write(path: Path, fill: Callable[[Path], object]) -> None:
         with suppress(OSError):
             temporary.unlink()
 
-    try:
+    with writing(path):
         # The temporary path could be a link, which `fill` would follow.
         temporary.unlink(missing_ok=True)
         with interrupts.undone_by(undo):
@@ -65,8 +74,6 @@ def write(path: Path, fill: Callable[[Path], object]) -> None:
             sync(temporary)
             temporary.rename(path)
             sync(path.parent)
-    except OSError as error:
-        raise Trouble(f"{path} cannot be written: {error.strerror or error}") from None
 
 
 def write_bytes(path: Path, content: bytes) -> None:
@@ -80,11 +87,9 @@ def mark(path: Path) -> None:
     Raises:
         Trouble: the file cannot be made.
     """
-    try:
+    with writing(path):
         path.touch(exist_ok=False)
         sync(path.parent)
-    except OSError as error:
-        raise Trouble(f"{path} cannot be written: {error.strerror or error}") from None
 
 
 def write_text(path: Path, text: str) -> None:
@@ -102,12 +107,10 @@ def replace_text(path: Path, text: str) -> None:
         Trouble: the file cannot be written.
     """
     temporary = path.with_name(TEMPORARY + path.name)
-    try:
+    with writing(path):
         temporary.unlink(missing_ok=True)  # it could be a link, which would be followed
         temporary.write_text(text, encoding="utf-8")
         temporary.replace(path)
-    except OSError as error:
-        raise Trouble(f"{path} cannot be written: {error.strerror or error}") from None
 
 
 def check_output(path: Path) -> None:
@@ -142,15 +145,15 @@ def make_folder(path: Path) -> None:
         InputError: no folder can have this name. Trouble: the folder cannot be made.
     """
     check_name(path)
-    try:
-        missing = takewhile(lambda each: not each.exists(), [path, *path.parents])
-        for folder in reversed([path, *missing]):
-            folder.mkdir(exist_ok=True)
-            sync(folder.parent)
-    except (FileExistsError, NotADirectoryError):
-        raise InputError(f"{path} is not a folder, or leads through a file; name another") from None
-    except OSError as error:
-        raise Trouble(f"{path} cannot be written: {error.strerror or error}") from None
+    with writing(path):
+        try:
+            missing = takewhile(lambda each: not each.exists(), [path, *path.parents])
+            for folder in reversed([path, *missing]):
+                folder.mkdir(exist_ok=True)
+                sync(folder.parent)
+        except (FileExistsError, NotADirectoryError):
+            wrong = f"{path} is not a folder, or leads through a file; name another"
+            raise InputError(wrong) from None
 
 
 def remove(path: Path) -> None:
@@ -212,11 +215,15 @@ def read(path: Path) -> bytes:
     return path.read_bytes()
 
 
+def sha256(path: Path) -> str:
+    """Return the checksum of a file."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
 def seal(path: Path) -> dict[str, Any]:
     """Return the size and the checksum of a file, as in manifests."""
-    with path.open("rb") as file:
-        digest = hashlib.file_digest(file, "sha256").hexdigest()
-    return {"bytes": path.stat().st_size, "sha256": digest}
+    return {"bytes": path.stat().st_size, "sha256": sha256(path)}
 
 
 def fault_in(path: Path, size: int, sha256: str) -> str | None:

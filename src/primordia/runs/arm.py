@@ -40,7 +40,9 @@ def _refuse_others(runs: Sequence[Records]) -> None:
     compared: dict[str, Callable[[Records], Any]] = {
         "settings": _settings,
         "description": lambda run: flat(run.description.model_dump(exclude={"files_from"})),
-        "ancestors": lambda run: {"genomes": run.config.ancestors and _founders(run)},
+        "ancestors": lambda run: {
+            "genomes": run.config.ancestors and files.sha256(run.path / FOUNDERS)
+        },
     }
     for run in others:
         for values in compared.values():
@@ -63,10 +65,6 @@ def _settings(run: Records) -> dict[str, Any]:
     """
     ignored: Any = {**dict.fromkeys((*OWN, "ancestors"), True), "fork": {"run"}}
     return flat(run.config.model_dump(mode="json", exclude=ignored))
-
-
-def _founders(run: Records) -> str:
-    return str(files.seal(run.path / FOUNDERS)["sha256"])
 
 
 def _refuse_twice(runs: Sequence[Records], seeds: np.ndarray) -> None:

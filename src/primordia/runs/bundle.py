@@ -11,14 +11,13 @@ Nothing in a bundle is executed.
 """
 
 import atexit
-import hashlib
 import os
 import re
 import shutil
 import stat
 import unicodedata
 import zipfile
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Mapping
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
@@ -162,13 +161,11 @@ def unbundle(file: Path, folder: Path) -> None:
             for each in left:
                 files.remove(each)
             _extract(file, temporary)
-            try:
+            with files.writing(folder):
                 for each in (*temporary.rglob("*"), temporary):
                     files.sync(each)
                 temporary.rename(folder)
                 files.sync(folder.parent)
-            except OSError as error:
-                raise Trouble(f"{folder} cannot be written: {error.strerror or error}") from None
 
 
 def refuse_changes(path: Path) -> None:
@@ -199,7 +196,8 @@ def _extract(file: Path, folder: Path) -> None:
                     raise ValueError(f"{name} has another size than the manifest says")
             directory.make_folders(folder)
             for name, seal in seals.items():
-                _copy(_pieces(bundle, entries[name]), folder / name, seal)
+                with bundle.open(entries[name]) as source:
+                    _copy(source, folder / name, seal)
     except (InputError, Trouble):
         raise
     except Exception as error:  # zipfile raises errors of many kinds for other files
@@ -249,26 +247,10 @@ def _seals(bundle: zipfile.ZipFile, entries: Entries) -> Seals:
     return _sealed(manifests)
 
 
-def _pieces(bundle: zipfile.ZipFile, entry: zipfile.ZipInfo) -> Iterator[bytes]:
-    """Yield the content of a file; raise ValueError if it cannot be read."""
-    try:
-        with bundle.open(entry) as source:
-            while piece := source.read(PIECE):
-                yield piece
-    except Exception as error:
-        raise ValueError(str(error)) from None
-
-
-def _copy(pieces: Iterable[bytes], path: Path, seal: Seal | None) -> None:
-    """Write a new file; raise ValueError if its size or checksum is wrong."""
-    digest = hashlib.sha256()
+def _copy(source: IO[bytes], path: Path, seal: Seal | None) -> None:
+    """Write a new file; raise ValueError if its checksum is wrong."""
     files.make_folder(path.parent)
-    try:
-        with path.open("xb") as file:
-            for piece in pieces:
-                digest.update(piece)
-                file.write(piece)
-    except OSError as error:
-        raise Trouble(f"{path} cannot be written: {error.strerror or error}") from None
-    if seal is not None and digest.hexdigest() != seal.sha256:
+    with files.writing(path), path.open("xb") as file:
+        shutil.copyfileobj(source, file, PIECE)
+    if seal is not None and files.sha256(path) != seal.sha256:
         raise ValueError(f"the checksum of {path.name} differs")

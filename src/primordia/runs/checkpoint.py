@@ -82,7 +82,7 @@ def write(
     """Write a checkpoint into the new folder `final`, such as RUN/origin; see `save`."""
     temporary = final.with_name(files.TEMPORARY + final.name)
     state, manifest = temporary / STATE, temporary / MANIFEST
-    try:
+    with files.writing(final):
         temporary.mkdir()
         with interrupts.undone_by(partial(shutil.rmtree, temporary, ignore_errors=True)):
             np.savez(state, allow_pickle=False, **arrays, **recorder.tails())
@@ -102,8 +102,6 @@ def write(
             files.sync(temporary)
             temporary.rename(final)
             files.sync(final.parent)
-    except OSError as error:
-        raise Trouble(f"{final} cannot be written: {error.strerror or error}") from None
 
 
 def _inputs(run: Path) -> list[str]:

@@ -7,7 +7,6 @@ appear twice.
 from pathlib import Path
 
 from primordia import files
-from primordia.errors import Trouble
 from primordia.printable import printable
 
 FILE = "faults.txt"
@@ -22,8 +21,5 @@ def note(run: Path, lines: list[str]) -> None:
     if not lines:
         return
     files.check_output(run / FILE)
-    try:
-        with (run / FILE).open("a", encoding="utf-8") as file:
-            file.writelines(printable(line, kept="\t") + "\n" for line in lines)
-    except OSError as error:
-        raise Trouble(f"{run / FILE} cannot be written: {error.strerror}") from None
+    with files.writing(run / FILE), (run / FILE).open("a", encoding="utf-8") as file:
+        file.writelines(printable(line, kept="\t") + "\n" for line in lines)

@@ -5,7 +5,6 @@ their checksums are in the run's description. All lives of the run use these cop
 moved, sent and lived again without the original files.
 """
 
-import hashlib
 import os
 from collections.abc import Mapping
 from os.path import isfile  # False, and no error, for a name that is too long
@@ -55,7 +54,7 @@ def copy(config: Config, habitat: AnyHabitat, run: Path) -> Kept:
             files.write_bytes(run / FOLDER / name, (found_in / name).read_bytes())
         except OSError as error:
             raise Trouble(f"{found_in / name} cannot be read: {error.strerror}") from None
-    kept = Kept(str(found_in), {name: _sha256(run / FOLDER / name) for name in names})
+    kept = Kept(str(found_in), {name: files.sha256(run / FOLDER / name) for name in names})
     if not _is_whole(config.keeping(_places(run, kept)), habitat, {*_places(run, kept).values()}):
         raise InputError(
             f"{named[0]} needs a file that is named by its full path, so a run cannot hold both;"
@@ -91,7 +90,7 @@ def check(config: Config, run: Path, about: Description) -> None:
     """
     code.check_files(run / FOLDER, set(about.files))
     for name, sha256 in about.files.items():
-        if _sha256(run / FOLDER / name) != sha256:
+        if files.sha256(run / FOLDER / name) != sha256:
             raise Trouble(f"{run / FOLDER / name} was changed or damaged: its checksum differs")
     try:
         more = _needed(config) - {*config.kept.values()} if config.kept else set()
@@ -107,7 +106,7 @@ def changes(about: Description) -> list[str]:
     return [
         f"{path} has changed"
         for path, sha256 in originals
-        if isfile(path) and _sha256(path) != sha256
+        if isfile(path) and files.sha256(path) != sha256
     ]
 
 
@@ -132,8 +131,3 @@ def _with_others(config: Config, places: Mapping[str, str]) -> set[str]:
         if named in places
         for path in habitats.find(table["name"]).files_with(places[named])
     }
-
-
-def _sha256(path: Path) -> str:
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -117,5 +117,5 @@ def _identity(run: Archive, arm: str) -> str:
     """Return a text that identifies a run's worlds on any machine; limits do not count."""
     settings = {name: value for name, value in _settings(run).items() if name != "stop"}
     begun = (run.path / FOUNDERS, run.path / checkpoint.ORIGIN / checkpoint.MANIFEST)
-    seals = [files.seal(path)["sha256"] for path in begun if path.exists()]
+    seals = [files.sha256(path) for path in begun if path.exists()]
     return json.dumps([arm, settings, run.description.model_dump(mode="json"), seals])

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from primordia import files
-from primordia.errors import InputError, Trouble
+from primordia.errors import InputError
 from primordia.tracking.reader import Row, World
 
 
@@ -45,17 +45,13 @@ class TensorBoard:
             InputError: the world's folder holds files of other worlds. Trouble: the folder cannot
                 be written.
         """
-        try:
+        with files.writing(self._folder / world.name):
             if world.identity not in self._open:
                 self._open[world.identity] = self._begun(world)
             writer, now = self._open[world.identity], time.time()
             for row in rows:
                 writer.write_event(self._event_of(row, now))
             writer.flush()
-        except OSError as error:
-            raise Trouble(
-                f"{self._folder / world.name} cannot be written: {error.strerror or error}"
-            ) from None
 
     def finish(self) -> None:
         """Close all files."""
