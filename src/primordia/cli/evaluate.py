@@ -16,6 +16,7 @@ from primordia.cli.flags import (
 from primordia.cli.numbers import COUNT, TICKS
 from primordia.cli.table import show_table, spread
 from primordia.errors import InputError
+from primordia.printable import counted
 
 if TYPE_CHECKING:
     from primordia.assays.controls import Standing
@@ -142,12 +143,12 @@ def _places(island: str | None, on: str | None) -> str:
 def evaluation_text(result: "Evaluation", changes: dict[str, Any], where: str = "") -> str:
     """Return the results in a few lines."""
     values = result.to_dict()
-    distinct = f"{_games(result.distinct, 'distinct ')}"
+    distinct = counted(result.distinct, "distinct game")
     if result.deterministic:
         distinct += "; nothing is random, so all games are the same"
     lines = [
         f"organism {result.organism} of world {result.world}{where}: "
-        f"{_games(result.games)}{_changed(changes)}"
+        f"{counted(result.games, 'game')}{_changed(changes)}"
         f"{SENSES[result.senses]}",
         f"  {distinct}",
         f"  lifespan  {_quartiles(values['lifespan'])}{_cut(values['alive_when_cut'], 'alive')}",
@@ -198,10 +199,6 @@ def _notes(standings: "list[Standing]", away: bool) -> list[str]:
 
 def _changed(habitat: dict[str, Any]) -> str:
     return "".join(f", {name} {value}" for name, value in habitat.items())
-
-
-def _games(count: int, kind: str = "") -> str:
-    return f"1 {kind}game" if count == 1 else f"{count:,} {kind}games"
 
 
 def _quartiles(spread: dict[str, float]) -> str:

@@ -12,6 +12,7 @@ from primordia.cli.flags import checkpoint_option, device_option, quiet_option, 
 from primordia.cli.paths import OutputPath, PathType
 from primordia.cli.streams import report
 from primordia.errors import InputError
+from primordia.printable import counted
 
 if TYPE_CHECKING:
     from primordia.experiments.campaign import Campaign
@@ -125,7 +126,7 @@ def _live_all(
             result = live_all(left, place, look, _report_failure)
         _end_unless_done(chosen, result)
     if chosen.left():
-        return report(f"{_jobs(len(chosen.left()))} of other arms left to do")
+        return report(f"{counted(len(chosen.left()), 'job')} of other arms left to do")
     if not (written := chosen.gather()):
         return report(
             f"one arm has nothing to be compared with; see `primordia info {chosen.path}`"
@@ -145,12 +146,8 @@ def _end_unless_done(chosen: "Campaign", result: "Result") -> None:
         report(f"Stopped and saved. Go on with: primordia experiment {chosen.path}")
         raise click.Abort
     if result.failed:
-        report(f"{_jobs(len(result.failed))} failed; give the same command to try again")
+        report(f"{counted(len(result.failed), 'job')} failed; give the same command to try again")
         raise click.exceptions.Exit(1)
     if result.elsewhere:
-        report(f"{_jobs(result.elsewhere)} under way in other processes; see --status")
+        report(f"{counted(result.elsewhere, 'job')} under way in other processes; see --status")
         raise click.exceptions.Exit(0)
-
-
-def _jobs(count: int) -> str:
-    return "1 job" if count == 1 else f"{count:,} jobs"

@@ -13,6 +13,7 @@ from primordia.cli.flags import (
     trust_option,
 )
 from primordia.cli.numbers import COUNT, TICKS
+from primordia.printable import counted
 
 if TYPE_CHECKING:
     from primordia.assays.shadow import Shadow
@@ -64,7 +65,7 @@ def shadow_text(found: "Shadow") -> str:
     born = "" if found.island is None else f" born on {found.island}"
     head = (
         f"{found.name}: {told['organisms']:,} organisms{born}, each born again alone, from"
-        f" {found.births:,} births in {told['worlds']} world{'s' if told['worlds'] > 1 else ''};"
+        f" {found.births:,} births in {counted(told['worlds'], 'world')};"
         f" {2 * told['organisms']:,} lives, {told['ticks']:,} ticks"
     )
     lines = [f"{'':12}{'mean life':>12}{f'reach {found.cut:,} ticks':>24}"]

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from primordia.history import series
+from primordia.printable import counted
 from primordia.runs.arrays import read_count
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
@@ -31,8 +32,7 @@ class Extinctions(NamedTuple):
     def text(self) -> str:
         """The number of crashes, and the number of worlds with a crash."""
         worlds = int((self.crashes > 0).sum())
-        many = "1 world" if worlds == 1 else f"{worlds:,} worlds"
-        return f"{self.crashes.sum():,} in {many}" if worlds else "0"
+        return f"{self.crashes.sum():,} in {counted(worlds, 'world')}" if worlds else "0"
 
 
 def extinctions(worlds: list[Lives], cells: int) -> Extinctions:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from primordia.history.series import quantile
+from primordia.printable import counted, often
 
 MAX_LISTED = 4
 """Largest number of worlds that are described one by one."""
@@ -20,9 +21,8 @@ MAX_RANGES = 4
 def summary(info: dict[str, Any]) -> str:
     """Return the summary of a run from its numbers (`info.info`)."""
     worlds = info["worlds"]
-    count = "1 world" if len(worlds) == 1 else f"{len(worlds):,} worlds"
     control = "" if info["inheritance"] == "parent" else ", no heredity"
-    lines = [f"{info['task']}: {count} of {info['cells']:,} cells{control}"]
+    lines = [f"{info['task']}: {counted(len(worlds), 'world')} of {info['cells']:,} cells{control}"]
     lines += _break_even(worlds) + _too_few_copies(worlds)
     if len(worlds) <= MAX_LISTED:
         for world in worlds:
@@ -35,8 +35,7 @@ def summary(info: dict[str, Any]) -> str:
         f"  not the newest state, since a checkpoint is damaged: {each}" for each in info["damaged"]
     ]
     if times := info["restarts"]:
-        often = "once" if times == 1 else f"{times:,} times"
-        lines.append(f"  the living got new bodies {often}, when the run was resumed")
+        lines.append(f"  the living got new bodies {often(times)}, when the run was resumed")
     return "\n".join(lines)
 
 
@@ -62,10 +61,10 @@ def _extinct(world: dict[str, Any]) -> str:
     times, crashes = world["extinctions"], world["crashes"]
     if not times:
         return ""
-    extinct = ", extinct once" if times == 1 else f", extinct {times:,} times"
+    extinct = f", extinct {often(times)}"
     if not crashes:
         return extinct
-    risen = "" if times == 1 else f" {'once' if crashes == 1 else f'{crashes:,} times'}"
+    risen = "" if times == 1 else f" {often(crashes)}"
     return f"{extinct},{risen} after half of the cells were full"
 
 
@@ -158,13 +157,13 @@ def _islands(worlds: list[dict[str, Any]]) -> list[str]:
             sum(island[name] for island in each)
             for name in ("living", "cells", "births", "immigrants")
         )
-        came = "1 immigrant" if immigrants == 1 else f"{immigrants:,} immigrants"
         over = "; medians over worlds: " if len(each) > 1 else ", "
         ages = [
             _median(words, [island[words.replace(" ", "_")] for island in each]) for words in AGES
         ]
         lines.append(
-            f"    {each[0]['name']}: {living:,} / {cells:,} alive, {births:,} births, {came}"
+            f"    {each[0]['name']}: {living:,} / {cells:,} alive, {births:,} births, "
+            + counted(immigrants, "immigrant")
             + (over + ", ".join(filter(None, ages)) if any(ages) else "")
         )
     return lines

@@ -21,6 +21,7 @@ from primordia.organism.inside import (
     squashed,
     tints,
 )
+from primordia.printable import counted
 
 LABEL = 11
 """columns of a name, with the gap after it"""
@@ -68,7 +69,7 @@ def _news(ago: int | None, ticks: int) -> Segment:
     """Return how long ago the world changed, or that it did not within the last `ticks`."""
     if ago is None:
         return Segment(f"none in the last {ticks:,} ticks")
-    return Segment("now" if ago == 0 else f"{ago:,} tick{'s' if ago > 1 else ''} ago", NEW)
+    return Segment("now" if ago == 0 else f"{counted(ago, 'tick')} ago", NEW)
 
 
 def _name(name: str, width: int = LABEL) -> Segment:

@@ -7,6 +7,7 @@ from typing import Any
 from primordia.experiments.campaign import Campaign
 from primordia.history.info import info
 from primordia.history.summary import seeds_text
+from primordia.printable import counted
 from primordia.progress import steps
 from primordia.report import islands
 from primordia.report.arms import arms, names
@@ -17,7 +18,7 @@ from primordia.report.ground import Ground, palette
 from primordia.report.lives import films
 from primordia.report.organisms import organisms
 from primordia.report.tree import tree
-from primordia.report.words import count, setting, words
+from primordia.report.words import setting, words
 from primordia.runs.records import Records
 
 WORLDS = 6
@@ -52,7 +53,7 @@ def of_run(run: Records, filmed: bool = True) -> dict[str, Any]:
             view(run, world, f"seed {seeds[world]}", len(worlds))
             for world in steps(worlds, "drawing")
         ],
-        "left_out": f"{count(left_out, 'further world')} not shown" if left_out else "",
+        "left_out": f"{counted(left_out, 'further world')} not shown" if left_out else "",
         "films": films(run) if filmed else None,
         **_islands(run),
         "facts": [{"name": "", **facts(run, numbers)}],
@@ -77,8 +78,8 @@ def of_experiment(chosen: Campaign) -> dict[str, Any]:
         "title": chosen.plan.question or runs[0].config.task,
         "subtitle": f"{_name(chosen.path)}, {runs[0].config.task}, jobs: {jobs}",
         "words": [
-            f"The experiment has {count(len(runs), 'arm')}: {', '.join(named)}. The arms differ in"
-            f" the settings below. All arms together have {count(worlds, 'world')}.",
+            f"The experiment has {counted(len(runs), 'arm')}: {', '.join(named)}. The arms differ in"
+            f" the settings below. All arms together have {counted(worlds, 'world')}.",
             setting(runs[0].config),
         ],
         "numbers": _numbers([world for each in numbers.values() for world in each["worlds"]]),

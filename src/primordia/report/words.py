@@ -8,6 +8,7 @@ import numpy as np
 from primordia.config import Config
 from primordia.figures.survival import quarters
 from primordia.live.panel import duration
+from primordia.printable import counted, often
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 
@@ -83,7 +84,7 @@ def _one_world(worlds: list[dict[str, Any]], run: Records, rate: float | None) -
     config = run.config
     parts = [
         f"In {world['ticks']:,} ticks{simulated(world['ticks'], rate)},"
-        f" {count(world['births'], 'organism')} {'was' if world['births'] == 1 else 'were'} born,"
+        f" {counted(world['births'], 'organism')} {'was' if world['births'] == 1 else 'were'} born,"
         f" and {_deaths(worlds)}.",
         *_extinct(world["extinctions"], config, "The world"),
     ]
@@ -99,7 +100,7 @@ def _one_world(worlds: list[dict[str, Any]], run: Records, rate: float | None) -
         )
     elif world["alive"]:
         parts.append(
-            f"{count(world['alive'], 'organism')} live{'s' if world['alive'] == 1 else ''} now in"
+            f"{counted(world['alive'], 'organism')} live{'s' if world['alive'] == 1 else ''} now in"
             f" the {config.cells:,} cells. The world is not saturated: organisms still die, and"
             " others follow."
         )
@@ -118,7 +119,7 @@ def _many_worlds(worlds: list[dict[str, Any]], run: Records, rate: float | None)
     are = "is" if saturated == 1 else "are"
     return [
         f"In up to {longest:,} ticks{simulated(longest, rate)} of each world,"
-        f" {count(total('births'), 'organism')} were born in all, and {_deaths(worlds)}.",
+        f" {counted(total('births'), 'organism')} were born in all, and {_deaths(worlds)}.",
         *_extinct(total("extinctions"), run.config, "In all, the worlds"),
         f"{most} worlds {are} saturated: all cells full, and no death for"
         f" {run.config.saturation_ticks:,} ticks.",
@@ -143,10 +144,9 @@ def _deaths(worlds: Sequence[dict[str, Any]]) -> str:
 def _extinct(times: int, config: Config, what: str) -> list[str]:
     if not times:
         return []
-    often = "once" if times == 1 else f"{times:,} times"
     new = "a random founder" if config.genesis == "one" else "founders in all cells"
     new = new if not config.ancestors else "the given genomes"
-    return [f"{what} died out {often}, and life began again with {new}."]
+    return [f"{what} died out {often(times)}, and life began again with {new}."]
 
 
 def _lives(run: Records, rate: float | None) -> list[str]:
@@ -180,8 +180,3 @@ def _median(lives: Lives) -> str:
 def simulated(ticks: int, rate: float | None) -> str:
     """Return the simulated time in brackets as text; "" if the habitat has no clock."""
     return f" ({duration(ticks / rate)} of simulated time)" if rate else ""
-
-
-def count(number: int, what: str) -> str:
-    """Return a number with its noun as text."""
-    return f"{number:,} {what}{'' if number == 1 else 's'}"

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from primordia.cli.table import spread
+from primordia.printable import counted
 
 
 class Told(NamedTuple):
@@ -73,7 +74,7 @@ def effects(name: str, found: list[Any]) -> Told:
     lived = spread(each.lifespan for each in found if each.mutation == mutations[0])
     count = len(found) // len(mutations)
     return Told(
-        f"{name}: {_count(count, 'organism')}; each mutation made"
+        f"{name}: {counted(count, 'organism')}; each mutation made"
         f" {len(found[0].mutants)} mutants of each",
         ("", *words.values(), "median life"),
         rows,
@@ -93,7 +94,7 @@ def ablate(name: str, found: list[Any]) -> Told:
         rows.append((loss, spread(e.lifespan for e in own), spread(e.kept for e in own)))
     first = [each for each in found if each.without == losses[0]]
     return Told(
-        f"{name}: {_count(len(first), 'organism')}, medians (quartiles)",
+        f"{name}: {counted(len(first), 'organism')}, medians (quartiles)",
         ("without", "ticks lived", "share of the intact life"),
         [("nothing", spread(each.intact for each in first), "1"), *rows],
     )
@@ -217,7 +218,7 @@ def generalists(name: str, found: list[Any]) -> list[Told]:
     """Return the tables of generalists and of the gains of islands, `assays.generalists`."""
     islands, lived = found[0].islands, [np.median(each.lived, axis=0) for each in found]
     shares = [
-        (f"masters {_count(count, 'island')}", spread(each.shares[count] for each in found))
+        (f"masters {counted(count, 'island')}", spread(each.shares[count] for each in found))
         for count in range(len(islands) + 1)
     ]
     of_islands = [
@@ -281,9 +282,5 @@ def _step_text(pair: Any) -> str:
     return f"{after.organism:,}: {before.reborn:,.0f} to {after.reborn:,.0f}"
 
 
-def _count(number: int, noun: str) -> str:
-    return f"{number:,} {noun}{'s' * (number != 1)}"
-
-
 def _title(name: str, found: list[Any]) -> str:
-    return f"{name}: {len(found)} world{'s' * (len(found) > 1)}, medians (quartiles)"
+    return f"{name}: {counted(len(found), 'world')}, medians (quartiles)"

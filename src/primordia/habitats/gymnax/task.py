@@ -6,6 +6,7 @@ from typing import Any
 from primordia.habitats.contract import Discrete, find
 from primordia.habitats.gymnax.check import BODIES, TICKS, Measured, measure
 from primordia.habitats.gymnax.habitat import Gymnax
+from primordia.printable import counted
 from primordia.settings.doors import Task, settings
 from primordia.settings.making import make
 
@@ -37,8 +38,8 @@ def _facts(habitat: Gymnax, found: Measured) -> list[str]:
     """Return the facts of an environment for the author of a task, each in a line."""
     action = habitat.action
     named: dict[str, Any] = dict(habitat.names)
-    numbers = f"{action.size} number{'s' * (action.size > 1)}"
-    what = f"one of {action.size}" if isinstance(action, Discrete) else numbers
+    choice = isinstance(action, Discrete)
+    what = f"one of {action.size}" if choice else counted(action.size, "number")
     limits = ", ".join(habitat.simulator.limits)
     return [
         f"Observation: {named['obs']} numbers, obs[0] to obs[{named['obs'] - 1}] in conditions.",

@@ -11,6 +11,7 @@ from primordia.organism import video
 from primordia.organism.reliving import diary, replay
 from primordia.organism.reliving.course import Course, Value, recorded
 from primordia.organism.reliving.relived import RelivedLife
+from primordia.printable import often
 from primordia.runs import checkpoint, directory
 from primordia.runs.archive import Archive, run_of
 from primordia.runs.arrays import Arrays, world_ticks
@@ -192,9 +193,8 @@ def _notes(run: Archive, course: Course) -> list[str]:
             "exact repetition is not sure: parts of this run cannot be repeated bit for bit"
         )
     if times := progress.restarts:
-        often = "once" if times == 1 else f"{times:,} times"
         notes.append(
-            f"the living got new bodies {often}, when the run was resumed; a life that was lived then"
-            " does not repeat"
+            f"the living got new bodies {often(times)}, when the run was resumed; a life that was"
+            " lived then does not repeat"
         )
     return notes
