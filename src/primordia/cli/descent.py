@@ -147,7 +147,7 @@ def _ancestor_row(found: "Ancestors", place: int) -> tuple[str, ...]:
         step["cause"] or "alive",
         f"{step['children']:,}",
         _number(size, ".3g") if step["birth_cause"] == "mutant" else step["birth_cause"],
-        *(_count(step[name]) for name in ("tenth", "half", "fixed")),
+        *(_number(step[name], ",") for name in ("tenth", "half", "fixed")),
     )
 
 
@@ -244,7 +244,3 @@ def _sweeps_text(sweeps: "list[Sweep]") -> str:
 
 def _number(value: float | None, form: str) -> str:
     return "-" if value is None or isnan(value) else f"{value:{form}}"
-
-
-def _count(value: int | None) -> str:
-    return "-" if value is None else f"{value:,}"

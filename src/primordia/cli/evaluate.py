@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from primordia.cli.assays.options import json_option
 from primordia.cli.flags import (
     HabitatCommand,
     island_option,
@@ -69,7 +70,7 @@ SENSES = {
 )
 @recorded_device_option
 @trust_option
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+@json_option
 @click.pass_obj
 def evaluate(
     habitat: dict[str, Any],
@@ -105,8 +106,9 @@ def evaluate(
     _refuse_pairs(freeze_senses and open_loop, organism, founders, island)
     senses: Any = "frozen" if freeze_senses else "ignored" if open_loop else "live"
     opened = load(run, trust)
-    options: Any = {"games": games, "ticks": ticks, "senses": senses, "habitat": habitat}
-    options |= {} if on is None else {"on": on}
+    options: Any = {
+        "games": games, "ticks": ticks, "senses": senses, "habitat": habitat, "on": on
+    }  # fmt: skip
     if organism is not None:
         result = opened.organism(organism, world or 0).evaluate(**options)
         if as_json:

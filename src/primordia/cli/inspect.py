@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from primordia import files
+from primordia.cli.assays.options import json_option
 from primordia.cli.experiment import show_status
 from primordia.cli.flags import (
     island_option,
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 
 @click.command()
 @runs_argument
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+@json_option
 def info(runs: tuple[Path, ...], as_json: bool) -> None:
     """Summarise a run so far, an arm, or an experiment."""
     from primordia.api import Experiment, load
@@ -193,7 +194,7 @@ def tasks() -> None:
     default=Path(),
     help="Folder for compare.png and compare.svg [the current folder].",
 )
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+@json_option
 def compare(runs: tuple[str, ...], out: Path, as_json: bool, **options: Any) -> None:
     """Compare runs of one task: how soon worlds saturate, how long organisms live.
 

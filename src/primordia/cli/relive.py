@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from primordia.cli.assays.options import json_option
 from primordia.cli.flags import recorded_device_option, run_argument, trust_option
 from primordia.cli.paths import OutputPath
 from primordia.cli.table import show_table
@@ -40,7 +41,7 @@ if TYPE_CHECKING:
 )
 @recorded_device_option
 @trust_option
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+@json_option
 def relive(
     run: Path,
     organism: int,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from primordia.cli.assays.options import arms_of, json_option
 from primordia.cli.flags import (
     island_option,
     recorded_device_option,
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 @island_option("Only organisms that were born on this island live again")
 @recorded_device_option
 @trust_option
-@click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+@json_option
 def shadow(
     runs: tuple[Path, ...],
     organisms: int,
@@ -47,11 +48,7 @@ def shadow(
     shadow each live alone, with the same new random keys. Several runs are measured as one arm. Each arm
     of an experiment is measured.
     """
-    from primordia.api import Experiment, load
-
-    loaded = load(runs, trust)
-    arms = list(loaded.arms.values()) if isinstance(loaded, Experiment) else [loaded]
-    found = [arm.shadow(organisms, ticks, island) for arm in arms]
+    found = [arm.shadow(organisms, ticks, island) for arm in arms_of(runs, trust)]
     if as_json:
         click.echo(json.dumps({"arms": [each.to_dict() for each in found]}))
     else:

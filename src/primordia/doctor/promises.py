@@ -164,16 +164,7 @@ def _killed(alone: list[str]) -> str:
 def _process(run: Path, *flags: str, **variables: str) -> subprocess.Popen[str]:
     """Begin the run of the world in a process of its own, which compiles for itself."""
     command = [sys.executable, "-m", "primordia", "run", TASK, "--quiet", *flags]
-    settings = [
-        "--seed",
-        f"{SEED}",
-        "--cells",
-        f"{CELLS}",
-        "--ticks",
-        f"{TICKS}",
-        "--until",
-        "none",
-    ]
+    settings = f"--seed {SEED} --cells {CELLS} --ticks {TICKS} --until none".split()
     return subprocess.Popen(
         [*command, *settings, "--out", str(run)],
         env=os.environ | {"JAX_ENABLE_COMPILATION_CACHE": "false"} | variables,

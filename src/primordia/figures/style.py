@@ -1,7 +1,8 @@
 """The style of figures: widths of a paper's columns, colours for the colour-blind, and saving."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -74,14 +75,9 @@ def save(figure: Figure, stem: Path) -> list[Path]:
         Trouble: a file cannot be written.
     """
     paths = [stem.with_suffix(".png"), stem.with_suffix(".svg")]
-    for path in paths:
-        files.write(path, _writer(figure, path.suffix))
+    for path, metadata in zip(paths, ({}, {"Date": None}), strict=True):
+        files.write(path, partial(figure.savefig, format=path.suffix[1:], metadata=metadata))
     return paths
-
-
-def _writer(figure: Figure, suffix: str) -> Callable[[Path], None]:
-    metadata = {"Date": None} if suffix == ".svg" else {}
-    return lambda path: figure.savefig(path, format=suffix[1:], metadata=metadata)
 
 
 def time_label(lives: Lives) -> str:

@@ -55,11 +55,6 @@ def chosen(run: Records, organism: int, world: int, count: int) -> Iterator[Besi
         yield Beside(next(pictures), f"organism {organism:,}")
 
 
-def nothing(count: int) -> Iterator[Beside]:
-    """Yield a `Beside` without picture and words, `count` times, for a habitat that draws no pictures."""
-    yield from repeat(Beside(None, ""), count)
-
-
 def pictures_of(run: Records, organism: int, world: int, count: int) -> Iterator[Image.Image]:
     """Yield a life's pictures, RATE of them for each second lived; the last is repeated for ever.
 

@@ -1,7 +1,7 @@
 """A film of a world, from the records of a run."""
 
 from collections.abc import Iterator
-from itertools import chain
+from itertools import chain, repeat
 from pathlib import Path
 
 import numpy as np
@@ -75,7 +75,7 @@ def _beside(
     if organism is not None:
         return beside.chosen(run, organism, int(lives.world[0]), len(shown))
     if replay.lacking(run.habitat):
-        return beside.nothing(len(shown))
+        return repeat(Beside(None, ""), len(shown))
     return beside.oldest(run, lives, shown)
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from fractions import Fraction
 from functools import partial
-from itertools import starmap
+from itertools import chain, starmap
 from pathlib import Path
 
 import av
@@ -71,13 +71,10 @@ def _mp4(path: Path, pictures: Iterator[Image.Image], rate: float) -> None:
         stream.width, stream.height = (size - size % 2 for size in first.size)
         stream.pix_fmt = "yuv420p"
         stream.options = {"crf": "23", "preset": "veryfast"}
-        for picture in _all(first, pictures):
-            container.mux(stream.encode(_frame(picture)))
+        for picture in chain([first], pictures):
+            frame = av.VideoFrame.from_ndarray(np.asarray(picture), format="rgb24")
+            container.mux(stream.encode(frame))
         container.mux(stream.encode())
-
-
-def _frame(picture: Image.Image) -> av.VideoFrame:
-    return av.VideoFrame.from_ndarray(np.asarray(picture), format="rgb24")
 
 
 def _gif(
@@ -98,10 +95,5 @@ def _gif(
         reduced.info["duration"] = 10 * (end - begin)  # in milliseconds
         return reduced
 
-    all_small = starmap(small, enumerate(_all(first, pictures)))
+    all_small = starmap(small, enumerate(chain([first], pictures)))
     next(all_small).save(path, save_all=True, append_images=all_small, loop=0, optimize=True)
-
-
-def _all(first: Image.Image, others: Iterator[Image.Image]) -> Iterator[Image.Image]:
-    yield first
-    yield from others

@@ -1,62 +1,31 @@
 """Assays in which organisms live again on the islands of a run."""
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import click
 
-from primordia.cli.assays import tables
-from primordia.cli.assays.of_lives import source_argument
 from primordia.cli.assays.options import (
+    Found,
     after_option,
     arms_of,
+    assay,
+    each_option,
     games_option,
-    json_option,
-    out_option,
-    tell,
+    source_argument,
     ticks_option,
 )
-from primordia.cli.flags import trust_option
-from primordia.cli.numbers import COUNT
+
+COMMON = (after_option, games_option, ticks_option)
 
 
-def assay_of_islands(short_help: str, each: int, of: str) -> Callable:
-    """Return a decorator for commands whose subjects live again on every island.
-
-    Args:
-        short_help: what the command does, in a line.
-        each: the default number of organisms.
-        of: the words that say which organisms are counted.
-    """
-    options = (
-        click.command(short_help=short_help),
-        source_argument,
-        click.option(
-            "--each", type=COUNT, default=each, show_default=True, help=f"Number of {of}."
-        ),
-        after_option,
-        games_option,
-        ticks_option,
-        out_option,
-        trust_option,
-        json_option,
-    )
-
-    def decorated(function: Any) -> Any:
-        for option in reversed(options):
-            function = option(function)
-        return function
-
-    return decorated
-
-
-@assay_of_islands(
+@assay(
     "Measure how natives of each island live on every island.",
-    each=20,
-    of="natives of each island of a world, and number of founders",
+    source_argument,
+    each_option(20, "natives of each island of a world, and number of founders"),
+    *COMMON,
 )
-def transplant(run: Path, trust: bool, out: Path | None, as_json: bool, **options: Any) -> None:
+def transplant(run: Path, trust: bool, **options: Any) -> Found:
     """Let natives of each island live again on every island of their world, beside founders.
 
     Natives of an island were born there late. If natives live longer at home than natives of other
@@ -65,20 +34,20 @@ def transplant(run: Path, trust: bool, out: Path | None, as_json: bool, **option
     """
     from primordia.assays.transplant import transplant as measure
 
-    found = {str(arm.path): measure(arm.opened(), **options) for arm in arms_of((run,), trust)}
-    tell("transplant", found, as_json, out, tables.transplant)
+    return {str(arm.path): measure(arm.opened(), **options) for arm in arms_of((run,), trust)}
 
 
-@click.option(
-    "--most", type=click.IntRange(min=2), default=40, show_default=True,
-    help="At most this many ancestors of a line live again.",
-)  # fmt: skip
-@assay_of_islands(
+@assay(
     "Measure who lives long on several islands, and since when.",
-    each=40,
-    of="late organisms of each world, and number of founders",
-)
-def generalists(run: Path, trust: bool, out: Path | None, as_json: bool, **options: Any) -> None:
+    click.option(
+        "--most", type=click.IntRange(min=2), default=40, show_default=True,
+        help="At most this many ancestors of a line live again.",
+    ),
+    source_argument,
+    each_option(40, "late organisms of each world, and number of founders"),
+    *COMMON,
+)  # fmt: skip
+def generalists(run: Path, trust: bool, **options: Any) -> Found:
     """Let late organisms live again on every island, then the ancestors of the most general one.
 
     An organism masters an island if it lives there longer than the best of as many founders. The last
@@ -87,5 +56,4 @@ def generalists(run: Path, trust: bool, out: Path | None, as_json: bool, **optio
     """
     from primordia.assays.generalists import generalists as measure
 
-    found = {str(arm.path): measure(arm.opened(), **options) for arm in arms_of((run,), trust)}
-    tell("generalists", found, as_json, out, tables.generalists)
+    return {str(arm.path): measure(arm.opened(), **options) for arm in arms_of((run,), trust)}

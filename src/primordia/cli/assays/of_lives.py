@@ -1,22 +1,12 @@
 """Assays in which organisms live again."""
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from primordia.cli.assays import tables
-from primordia.cli.assays.options import (
-    games_option,
-    json_option,
-    out_option,
-    tell,
-    ticks_option,
-)
-from primordia.cli.flags import HabitatCommand, trust_option
+from primordia.cli.assays.options import Found, assay, games_option, source_argument, ticks_option
 from primordia.cli.numbers import COUNT, Finite
-from primordia.cli.paths import PathType
 
 if TYPE_CHECKING:
     from primordia.assays.subjects import Subjects
@@ -24,7 +14,6 @@ if TYPE_CHECKING:
 SUFFIX = ".safetensors"
 """The suffix of a genome file."""
 
-source_argument = click.argument("run", type=PathType())
 organisms_argument = click.argument("organisms", type=int, nargs=-1, metavar="[ID]...")
 world_option = click.option(
     "--world", type=int, help="The organisms' world [0 if an ID is given, otherwise see above]."
@@ -32,49 +21,30 @@ world_option = click.option(
 task_option = click.option(
     "--task", help="Task in which the genomes of a file live [the task that the file names]."
 )
+SUBJECTS = (source_argument, organisms_argument, world_option)
+GAMES = (games_option, ticks_option)
 
 
-def assay_of_lives(short_help: str, genomes: bool = True) -> Callable:
-    """Return a decorator for commands whose subjects live again; habitat settings are flags too.
-
-    `genomes` says whether the subjects may be genomes of a file, which live in the task of --task.
-    """
-    options: tuple[Any, ...] = (
-        click.command(cls=HabitatCommand, short_help=short_help),
-        source_argument,
-        organisms_argument,
-        world_option,
-        *([task_option] if genomes else []),
-        games_option,
-        ticks_option,
-        out_option,
-        trust_option,
-        json_option,
-        click.pass_obj,
-    )
-
-    def decorated(function: Any) -> Any:
-        for option in reversed(options):
-            function = option(function)
-        return function
-
-    return decorated
-
-
-@click.option(
-    "--mutants", type=COUNT, default=24, show_default=True,
-    help="Number of mutants of each organism, for each mutation.",
+@assay(
+    "Measure how mutations of several sizes change a life.",
+    click.option(
+        "--mutants", type=COUNT, default=24, show_default=True,
+        help="Number of mutants of each organism, for each mutation.",
+    ),
+    click.option(
+        "--scale", "scales", type=Finite(min=0, min_open=True, max=1e30), multiple=True,
+        help="Standard deviation of the noise, as a multiple of the founders' standard deviation; may be"
+        " repeated [0.001 0.003 0.01 0.03 0.1 0.3].",
+    ),
+    click.option(
+        "--differs", type=Finite(min=0), multiple=True,
+        help="Also measure a calibrated mutation that changes behaviour by this share; may be repeated.",
+    ),
+    *SUBJECTS,
+    task_option,
+    *GAMES,
+    settings=True,
 )  # fmt: skip
-@click.option(
-    "--scale", "scales", type=Finite(min=0, min_open=True, max=1e30), multiple=True,
-    help="Standard deviation of the noise, as a multiple of the founders' standard deviation; may be"
-    " repeated [0.001 0.003 0.01 0.03 0.1 0.3].",
-)  # fmt: skip
-@click.option(
-    "--differs", type=Finite(min=0), multiple=True,
-    help="Also measure a calibrated mutation that changes behaviour by this share; may be repeated.",
-)  # fmt: skip
-@assay_of_lives("Measure how mutations of several sizes change a life.")
 def effects(
     habitat: dict[str, Any],
     /,
@@ -83,10 +53,8 @@ def effects(
     differs: tuple[float, ...],
     games: int,
     ticks: int,
-    out: Path | None,
-    as_json: bool,
     **chosen: Any,
-) -> None:
+) -> Found:
     """Measure several kinds of mutation: let mutants play the same games as their parents.
 
     RUN is a run, a genome file or a task. Without an ID, the parents are the champions of a run's
@@ -98,22 +66,20 @@ def effects(
     from primordia.assays.effects import effects as measure
 
     subjects = subjects_of(habitat, **chosen)
-    found = measure(subjects, scales or SCALES, differs, mutants, games, ticks)
-    tell("effects", {subjects.source: found}, as_json, out, tables.effects)
+    return {subjects.source: measure(subjects, scales or SCALES, differs, mutants, games, ticks)}
 
 
-@click.option("--each-sense", is_flag=True, help="Also freeze each sense alone.")
-@assay_of_lives("Measure how a life depends on senses, memory, learning and weights.")
+@assay(
+    "Measure how a life depends on senses, memory, learning and weights.",
+    click.option("--each-sense", is_flag=True, help="Also freeze each sense alone."),
+    *SUBJECTS,
+    task_option,
+    *GAMES,
+    settings=True,
+)
 def ablate(
-    habitat: dict[str, Any],
-    /,
-    each_sense: bool,
-    games: int,
-    ticks: int,
-    out: Path | None,
-    as_json: bool,
-    **chosen: Any,
-) -> None:
+    habitat: dict[str, Any], /, each_sense: bool, games: int, ticks: int, **chosen: Any
+) -> Found:
     """Let organisms live again with one part switched off: senses, memory, plasticity (of
     brains that learn), or a block of weights.
 
@@ -124,8 +90,7 @@ def ablate(
     from primordia.assays.ablate import ablate as measure
 
     subjects = subjects_of(habitat, **chosen)
-    found = measure(subjects, each_sense, games, ticks)
-    tell("ablate", {subjects.source: found}, as_json, out, tables.ablate)
+    return {subjects.source: measure(subjects, each_sense, games, ticks)}
 
 
 def subjects_of(

@@ -6,10 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from primordia.cli.assays import tables
-from primordia.cli.assays.of_lives import SUFFIX, subjects_of
-from primordia.cli.assays.options import json_option, out_option, tell
-from primordia.cli.flags import HabitatCommand, trust_option
+from primordia.cli.assays.of_lives import SUFFIX, subjects_of, task_option
+from primordia.cli.assays.options import Found, assay
 from primordia.cli.numbers import COUNT, TICKS
 
 if TYPE_CHECKING:
@@ -19,21 +17,18 @@ NUMBERED = re.compile(r"(?P<place>.+):(?P<organism>[0-9]{1,18})(@(?P<world>[0-9]
 """A run or a genome file, an organism in it, and the organism's world."""
 
 
-@click.command(cls=HabitatCommand, short_help="Let two genomes compete in one world.")
-@click.argument("one")
-@click.argument("other")
-@click.option(
-    "--task", help="Task in which the genomes of a file live [the task that the file names]."
-)
-@click.option("--worlds", type=COUNT, default=10, show_default=True, help="Number of worlds.")
-@click.option(
-    "--ticks", type=TICKS, default=5_000, show_default=True,
-    help="Number of ticks of each world.",
+@assay(
+    "Let two genomes compete in one world.",
+    click.argument("one"),
+    click.argument("other"),
+    task_option,
+    click.option("--worlds", type=COUNT, default=10, show_default=True, help="Number of worlds."),
+    click.option(
+        "--ticks", type=TICKS, default=5_000, show_default=True,
+        help="Number of ticks of each world.",
+    ),
+    settings=True,
 )  # fmt: skip
-@out_option
-@trust_option
-@json_option
-@click.pass_obj
 def compete(
     habitat: dict[str, Any],
     /,
@@ -43,9 +38,7 @@ def compete(
     worlds: int,
     ticks: int,
     trust: bool,
-    out: Path | None,
-    as_json: bool,
-) -> None:
+) -> Found:
     """Let two genomes compete without mutation. In each world, each genome begins in half of the
     cells. Measure whose descendants take over.
 
@@ -58,8 +51,7 @@ def compete(
     from primordia.assays.compete import compete as measure
 
     sides = [_side(each, habitat, task, trust) for each in (one, other)]
-    found = measure(sides[0], sides[1], worlds, ticks)
-    tell("compete", {f"{one} and {other}": [found]}, as_json, out, tables.compete)
+    return {f"{one} and {other}": [measure(sides[0], sides[1], worlds, ticks)]}
 
 
 def _side(words: str, habitat: dict[str, Any], task: str | None, trust: bool) -> "Subjects":

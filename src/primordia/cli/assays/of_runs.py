@@ -5,48 +5,28 @@ from typing import Any
 
 import click
 
-from primordia.cli.assays import tables
-from primordia.cli.assays.of_lives import assay_of_lives, source_argument
+from primordia.cli.assays.of_lives import GAMES, SUBJECTS
 from primordia.cli.assays.options import (
+    Found,
     after_option,
     arms_of,
-    born_on,
-    games_option,
-    json_option,
-    out_option,
-    tell,
-    ticks_option,
+    assay,
+    each_option,
+    source_argument,
 )
-from primordia.cli.flags import HabitatCommand, island_option, trust_option
-from primordia.cli.numbers import COUNT
+from primordia.cli.flags import island_option
 
 
-@click.command(
-    cls=HabitatCommand, short_help="Measure whether the oldest organisms are good or were lucky."
+@assay(
+    "Measure whether the oldest organisms are good or were lucky.",
+    source_argument,
+    each_option(20, "organisms of each group in each world"),
+    after_option,
+    island_option("All three groups are born on this island"),
+    *GAMES,
+    settings=True,
 )
-@source_argument
-@click.option(
-    "--each", type=COUNT, default=20, show_default=True,
-    help="Number of organisms of each group in each world.",
-)  # fmt: skip
-@after_option
-@island_option("All three groups are born on this island")
-@games_option
-@ticks_option
-@out_option
-@trust_option
-@json_option
-@click.pass_obj
-def garden(
-    habitat: dict[str, Any],
-    /,
-    run: Path,
-    island: str | None,
-    trust: bool,
-    out: Path | None,
-    as_json: bool,
-    **options: Any,
-) -> None:
+def garden(habitat: dict[str, Any], /, run: Path, trust: bool, **options: Any) -> Found:
     """Let three groups be born again: the oldest organisms, others born late, and founders.
 
     The oldest organisms were also lucky. New lives in fresh games show how good their genomes are.
@@ -55,19 +35,23 @@ def garden(
     """
     from primordia.assays.garden import garden as measure
 
-    found = {
-        str(arm.path): measure(arm.opened(), habitat=habitat, island=island, **options)
+    return {
+        str(arm.path): measure(arm.opened(), habitat=habitat, **options)
         for arm in arms_of((run,), trust)
     }
-    tell("garden", found, as_json, out, born_on(island, tables.garden))
 
 
-@click.option(
-    "--most", type=click.IntRange(min=2), default=200, show_default=True,
-    help="At most this many genomes of the line live again.",
+@assay(
+    "Measure when a line of descent became good.",
+    click.option(
+        "--most", type=click.IntRange(min=2), default=200, show_default=True,
+        help="At most this many genomes of the line live again.",
+    ),
+    island_option("Without an ID, the line leads to the champion of this island"),
+    *SUBJECTS,
+    *GAMES,
+    settings=True,
 )  # fmt: skip
-@island_option("Without an ID, the line leads to the champion of this island")
-@assay_of_lives("Measure when a line of descent became good.", genomes=False)
 def line(
     habitat: dict[str, Any],
     /,
@@ -76,10 +60,8 @@ def line(
     world: int | None,
     island: str | None,
     trust: bool,
-    out: Path | None,
-    as_json: bool,
     **options: Any,
-) -> None:
+) -> Found:
     """Let the ancestors of organisms live again, all in the same games.
 
     Without an ID the line leads to the champion of --world, or of the whole run. Any setting of
@@ -97,5 +79,4 @@ def line(
     if not numbers:
         row = oldest(opened, world, island=island)
         numbers = [(int(opened.lives.id[row]), int(opened.lives.world[row]))]
-    found = [measure(opened, *each, habitat=habitat, **options) for each in numbers]
-    tell("line", {str(run): found}, as_json, out, tables.line)
+    return {str(run): [measure(opened, *each, habitat=habitat, **options) for each in numbers]}

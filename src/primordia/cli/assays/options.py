@@ -2,16 +2,18 @@
 
 import json
 from collections.abc import Callable, Mapping
-from functools import partial
+from functools import partial, wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from primordia import files
+from primordia.cli.assays import tables
 from primordia.cli.assays.tables import Told
+from primordia.cli.flags import HabitatCommand, trust_option
 from primordia.cli.numbers import COUNT, TICKS, Finite
-from primordia.cli.paths import OutputPath
+from primordia.cli.paths import OutputPath, PathType
 from primordia.cli.table import show_table
 
 if TYPE_CHECKING:
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
 
     from primordia.api import Run
 
+source_argument = click.argument("run", type=PathType())
 after_option = click.option(
     "--after",
     type=Finite(0, 1, max_open=True),
@@ -46,6 +49,50 @@ ticks_option = click.option(
     show_default=True,
     help="Cut games at this number of ticks.",
 )
+
+
+def each_option(count: int, of: str) -> Callable:
+    """Return the option --each with its default; `of` says which organisms are counted."""
+    return click.option(
+        "--each", type=COUNT, default=count, show_default=True, help=f"Number of {of}."
+    )
+
+
+Found = dict[str, list[Any]]
+"""The results of each arm, by its path."""
+
+
+def assay(
+    short_help: str, *options: Callable, trusted: bool = True, settings: bool = False
+) -> Callable[[Callable[..., Found]], click.Command]:
+    """Return a decorator that makes a command of a function that measures; its results are printed.
+
+    The function's name is that of its tables in `tables`, and of its figure in `figures.assays`. The
+    title of a table names the island of the option --island.
+
+    Args:
+        short_help: what the command does, in a line.
+        options: its arguments and options, beside --out, --trust and --json.
+        trusted: whether it may execute a run's own code, so that it has the option --trust.
+        settings: whether the settings of the habitat are flags too; the function takes them first.
+    """
+    kind: Any = {"cls": HabitatCommand} if settings else {}
+    last = click.pass_obj if settings else lambda command: command
+    common = (out_option, *([trust_option] if trusted else []), json_option, last)
+
+    def decorated(measure: Callable[..., Found]) -> click.Command:
+        @wraps(measure)
+        def command(*given: Any, out: Path | None, as_json: bool, **chosen: Any) -> None:
+            name = measure.__name__
+            table = born_on(chosen.get("island"), getattr(tables, name))
+            tell(name, measure(*given, **chosen), as_json, out, table)
+
+        made: Any = command
+        for option in reversed((click.command(short_help=short_help, **kind), *options, *common)):
+            made = option(made)
+        return made
+
+    return decorated
 
 
 def born_on(island: str | None, table: Callable[[str, list[Any]], Told]) -> Callable:
