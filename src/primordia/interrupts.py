@@ -41,7 +41,9 @@ _last_words: list[Callable[[], str]] = [lambda: "Stopped"]
 def end_commands_at_once() -> None:
     """Let signals end this process from now on, with a line on stderr, except in blocks of `deferred`."""
     _handle(_note)
-    atexit.register(_ignore)  # registered first, so it is called last
+    # While the interpreter ends, the system's default would kill the process. This is registered
+    # first, so it is called last.
+    atexit.register(_handle, signal.SIG_IGN)
     woken, waker = os.pipe()
     os.set_blocking(waker, False)
     signal.set_wakeup_fd(waker, warn_on_full_buffer=False)
@@ -137,11 +139,6 @@ def _handle(handler: Callable[[int, object], None] | signal.Handlers) -> list:
     for each, _ in before:
         signal.signal(each, handler)
     return before
-
-
-def _ignore() -> None:
-    """Ignore signals while the interpreter ends: the system's default would kill the process."""
-    _handle(signal.SIG_IGN)
 
 
 def _wait_and_end(woken: int) -> None:

@@ -50,9 +50,11 @@ CALLS: dict[tuple[Any, ...], Any] = {
         call.standings(world=2, island="i", games=3, ticks=9, senses="ignored",
                        habitat={"sticky": 0.5}, founders=7, on="j"),
     ("evaluate", RUN, "--world", 0, "--json"):
-        call.standings(world=0, island=None, games=30, ticks=100_000, senses="live", habitat={}),
+        call.standings(world=0, island=None, games=30, ticks=100_000, senses="live", habitat={},
+                       on=None),
     ("evaluate", RUN, "--json"):
-        call.standings(world=None, island=None, games=30, ticks=100_000, senses="live", habitat={}),
+        call.standings(world=None, island=None, games=30, ticks=100_000, senses="live", habitat={},
+                       on=None),
     ("shadow", RUN, "--organisms", 3, "--ticks", 9, "--island", "i", "--json"):
         call.shadow(3, 9, "i"),
     ("shadow", RUN, "--json"): call.shadow(500, None, None),
@@ -153,7 +155,7 @@ def test_one_organism_is_evaluated_in_its_world(run: MagicMock) -> None:
         asked = ("--organism", organism, *world, "--freeze-senses", "--games", 3, "--json")
         does("evaluate", RUN, *asked)
         run.organism.assert_called_with(organism, number)
-        options = {"games": 3, "ticks": 100_000, "senses": "frozen", "habitat": {}}
+        options = {"games": 3, "ticks": 100_000, "senses": "frozen", "habitat": {}, "on": None}
         run.organism.return_value.evaluate.assert_called_with(**options)
 
 

@@ -13,7 +13,6 @@ import pytest
 
 import primordia
 from primordia import api
-from primordia.cli import experiment as command
 from primordia.errors import InputError, Trouble
 from primordia.experiments import dispatch, on_ray
 from primordia.experiments import job as jobs
@@ -326,7 +325,3 @@ def test_one_job_has_the_interval_and_the_device_of_the_command(
 def test_a_cluster_has_no_number_of_jobs() -> None:
     with pytest.raises(InputError, match="--jobs is for jobs on this machine"):
         dispatch.place_for(Path("out"), 4, 1, "")
-
-
-def test_numbers_of_jobs_have_a_comma_after_the_thousands() -> None:
-    assert command._jobs(1234) == "1,234 jobs"

@@ -58,7 +58,7 @@ def test_outcomes_and_effects_are_those_of_each_arm(compared: Comparison) -> Non
         ["harsh", "0.1", "none", "3 of 3", "50 (40 to 60)", "500 (400 to 600)"],
         ["odd", "0.2", "none", "2 of 3", "2 (1 to >= 30)", "20 (10 to >= 300)"],
     ]
-    (effects,) = _effects(compared)
+    effects = _effects(compared)
     assert effects["head"] == ["against mild", "births to saturation", "ticks to saturation"]
     assert effects["rows"][0] == ["harsh", "+1.00 later; 2.5", "+1.00 later; 2.5"]
     assert effects["rows"][1] == [

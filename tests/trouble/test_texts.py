@@ -24,7 +24,7 @@ from primordia.cli import commands, streams
 from primordia.cli.commands import execute
 from primordia.cli.streams import Printable
 from primordia.errors import InputError
-from primordia.printable import printable
+from primordia.printable import counted, often, printable
 from tests.commands import COMMAND, complains, environment, here
 from tests.plays import settings_of
 from tests.trouble import SMALL, TASK, TICKS, digest, goes_on
@@ -168,6 +168,11 @@ with open(sys.argv[1], "w") as file:
     print(file.fileno(), *map(os.get_inheritable, range(3)), file=file)
 """
 """A program that opens a file and writes its number into it, and what it gives to workers."""
+
+
+def test_counts_have_their_nouns_and_a_comma_after_the_thousands() -> None:
+    assert [counted(number, "job") for number in (0, 1, 1234)] == ["0 jobs", "1 job", "1,234 jobs"]
+    assert [often(times) for times in (1, 2, 1234)] == ["once", "2 times", "1,234 times"]
 
 
 @pytest.mark.parametrize("closed", ["<&- >&- 2>&-", ">&-"])

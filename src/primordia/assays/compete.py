@@ -17,7 +17,7 @@ from primordia.comparison.pairs import sign_test
 from primordia.config import Config, checked
 from primordia.errors import InputError
 from primordia.history.ancestry import nearest
-from primordia.history.series import population
+from primordia.history.series import mean_of_known, plain, population
 from primordia.law.world import BirthCause
 from primordia.runs import loop
 from primordia.runs.archive import Archive
@@ -46,10 +46,7 @@ class Competition:
     @property
     def late_share(self) -> np.ndarray:
         """Mean of `share` over the later half of the ticks, float64 (W,); NaN if nothing lives then."""
-        late = self.share[:, self.share.shape[1] // 2 :]
-        known = np.isfinite(late)
-        total = np.where(known, late, 0).sum(axis=1)
-        return np.where(known.any(axis=1), total / np.maximum(known.sum(axis=1), 1), np.nan)
+        return mean_of_known(self.share[:, self.share.shape[1] // 2 :], axis=1)
 
     @property
     def won(self) -> tuple[int, int]:
@@ -64,16 +61,15 @@ class Competition:
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain values for JSON."""
-        share = [[None if np.isnan(each) else each for each in row] for row in self.share.tolist()]
         return {
             "one": self.one,
             "other": self.other,
-            "worlds": len(share),
-            "late_share": [None if np.isnan(each) else each for each in self.late_share.tolist()],
+            "worlds": len(self.share),
+            "late_share": plain(self.late_share),
             "won": list(self.won),
             "p": self.p,
             "tick": self.tick.tolist(),
-            "share": share,
+            "share": plain(self.share),
         }
 
 

@@ -11,9 +11,9 @@ import jax.numpy as jnp
 import numpy as np
 
 from primordia.assays.subjects import GAMES, TICKS
-from primordia.assays.transplant import everywhere, islands_of, plain
+from primordia.assays.transplant import everywhere, islands_of
 from primordia.history.rebuilding import descent
-from primordia.history.series import spaced
+from primordia.history.series import plain, spaced
 from primordia.law.world import BirthCause
 from primordia.organism.playing.players import founders_of, players_of
 from primordia.random.keys import Purpose, stream

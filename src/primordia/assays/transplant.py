@@ -12,7 +12,7 @@ import numpy as np
 
 from primordia.assays.subjects import GAMES, TICKS
 from primordia.errors import InputError
-from primordia.history.series import spaced
+from primordia.history.series import mean_of_known, plain, spaced
 from primordia.organism.playing.games import Players, lifespans_in_games
 from primordia.organism.playing.players import founders_of, moved, players_of
 from primordia.progress import steps
@@ -50,9 +50,7 @@ class Transplant:
         """Return the means of natives' lives without those at home, along an axis, (K,)."""
         others = self.lived[:-1].copy()
         np.fill_diagonal(others, np.nan)
-        known = np.isfinite(others)
-        total = np.where(known, others, 0).sum(axis=axis)
-        return np.where(known.any(axis=axis), total / np.maximum(known.sum(axis=axis), 1), np.nan)
+        return mean_of_known(others, axis)
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain values for JSON."""
@@ -129,10 +127,3 @@ def everywhere(run: Records, players: Players, world: int, games: int, ticks: in
         here = moved(run, players, worlds, k)
         lived[:, k] = lifespans_in_games(here, number, ticks).mean(axis=1)
     return lived
-
-
-def plain(values: np.ndarray) -> list:
-    """Return an array as lists for JSON; None stands for NaN."""
-    listed = values.astype(object)
-    listed[~np.isfinite(values)] = None
-    return listed.tolist()

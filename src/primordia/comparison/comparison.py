@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from primordia.comparison.contrast import Contrast, contrast, plain
+from primordia.comparison.contrast import Contrast, contrast
 from primordia.comparison.differing import differing
 from primordia.comparison.measured import Measured
 from primordia.comparison.moments import first_long, often_saturated, saturation
@@ -27,6 +27,7 @@ from primordia.config import Config
 from primordia.errors import InputError
 from primordia.history.extinctions import Extinctions, extinctions
 from primordia.history.islands import born_on
+from primordia.history.series import plain
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
 

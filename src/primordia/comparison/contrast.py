@@ -12,7 +12,7 @@ from primordia.comparison import needed
 from primordia.comparison.measured import Bounds, Measured
 from primordia.comparison.pairs import Paired, Rows, paired
 from primordia.comparison.resample import LEAST, MISSED, enough, interval, least, resamples
-from primordia.history.series import quantile
+from primordia.history.series import plain, quantile
 
 WORDS = ((0.147, "negligible"), (0.33, "small"), (0.474, "medium"))
 """The word for an absolute delta below each number; from the last number on it is "large" (Romano et al.
@@ -108,11 +108,6 @@ def contrast(
         else None,
         worlds=worlds,
     )
-
-
-def plain(bounds: Bounds) -> list[float | None]:
-    """Return bounds for JSON, which has no infinity."""
-    return [each if np.isfinite(each) else None for each in bounds]
 
 
 def _interval(runs: tuple[Measured, Measured], streams: tuple[int, int], missed: float) -> Bounds:

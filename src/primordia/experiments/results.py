@@ -3,7 +3,6 @@
 import csv
 import datetime
 import io
-import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -202,13 +201,10 @@ def world_rows(
         columns = [column.tolist() for column in numbers.values()]
         columns += [_cells(arm.measured[name]) for name in known]
         for world, row in enumerate(zip(*columns, strict=True)):
-            last = [_known(value) for value in ends[number][world].values()] if ends else []
-            rows.writerow([arm.name, *("" if cell == NEVER else cell for cell in row), *last])
+            last = ends[number][world].values() if ends else ()
+            cells = ("" if cell == NEVER or cell != cell else cell for cell in (*row, *last))
+            rows.writerow([arm.name, *cells])
     return text.getvalue()
-
-
-def _known(value: float) -> float | str:
-    return "" if math.isnan(value) else value
 
 
 def _cells(measured: Measured) -> list[str]:

@@ -195,7 +195,7 @@ def strips(
 ) -> None:
     """Draw a panel: a strip of the known values for each name, and a line at its median."""
     for place, each in enumerate(values.values()):
-        known = np.array([value for value in each if value is not None], float)
+        known = np.array(list(each), float)  # None is NaN
         known = known[np.isfinite(known)]
         if not len(known):
             continue

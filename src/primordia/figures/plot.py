@@ -51,7 +51,8 @@ def plot(
     run.lives.check_world(world)
     if out is None:
         bundle.refuse_changes(run.path)
-    drawing = {_file(name): find(name) for name in figures or KNOWN}
+    # The files of your own figure are named like its function.
+    drawing = {name.rpartition(":")[2]: find(name) for name in figures or KNOWN}
     if out is None:
         files.own_folder(folder := run.path / "figures")
     else:
@@ -76,8 +77,3 @@ def find(name: str) -> Draw:
         return parts.load("figure", name, KNOWN)
     except LookupError as error:
         raise InputError(str(error)) from None
-
-
-def _file(name: str) -> str:
-    """Return the stem of the names of a figure's files: for your own figure, the function's name."""
-    return name.rpartition(":")[2]

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from primordia.figures import style
-from primordia.history.threshold import Threshold, over_births
+from primordia.history.threshold import over_births
 from primordia.runs.records import Records
 
 WINDOWS, ENOUGH = 20, 200
@@ -30,7 +30,7 @@ def draw(run: Records, world: int) -> Figure | None:
         "held": "Does a good line persist?",
     }
     for axes, (name, title) in zip(figure.subplots(1, 3), panels.items(), strict=True):
-        values = np.array([[_value(each, name) for each in of_world] for of_world in found])
+        values = np.array([[getattr(each, name) for each in of_world] for of_world in found], float)
         style.curves(axes, middle, values)
         style.linear(axes.xaxis)
         axes.set(xlabel="organisms born so far", xlim=(0, longest))
@@ -43,8 +43,3 @@ def draw(run: Records, world: int) -> Figure | None:
         threshold = {"threshold": style.VERMILION} if name == "held" else {}
         style.title(axes, title, {**style.worlds_key(len(worlds)), **threshold})
     return figure
-
-
-def _value(found: Threshold, name: str) -> float:
-    value = getattr(found, name)
-    return np.nan if value is None else value

@@ -58,7 +58,7 @@ def _heat(axes: Axes, islands: tuple[str, ...], lived: np.ndarray, worlds: int) 
         red, green, blue, _ = image.cmap(norm(max(value, 1)))
         light = 0.3 * red + 0.59 * green + 0.11 * blue
         axes.text(
-            column, row, _number(value), ha="center", va="center",
+            column, row, f"{value:,.0f}" if np.isfinite(value) else "-", ha="center", va="center",
             color=style.INK if light > LIGHT else "white",
         )  # fmt: skip
     for k in range(len(islands)):
@@ -161,7 +161,3 @@ def _mark(axes: Axes, gained: Ancestor, lived: float, colour: str) -> None:
         gained.generation, lived, "o", color=colour, markersize=6, zorder=4,
         markeredgecolor="white", markeredgewidth=0.8,
     )  # fmt: skip
-
-
-def _number(value: float) -> str:
-    return f"{value:,.0f}" if np.isfinite(value) else "-"

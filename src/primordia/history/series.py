@@ -1,8 +1,10 @@
 """Curves over time, exact at every tick, from births and deaths alone."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from primordia.runs.lives import Lives
 
@@ -60,6 +62,17 @@ def quantile(values: np.ndarray, q: float) -> np.ndarray:
     """
     place = max(int(np.ceil(q * values.shape[-1])) - 1, 0)
     return np.partition(values, place, axis=-1)[..., place]
+
+
+def mean_of_known(values: np.ndarray, axis: int) -> np.ndarray:
+    """Return the mean along an axis of the values that are known, float64; NaN if there are none."""
+    return np.ma.masked_invalid(values).mean(axis=axis).filled(np.nan)
+
+
+def plain(values: ArrayLike) -> Any:
+    """Return numbers for JSON, an array as lists; None stands for a number that is not finite."""
+    numbers = np.asarray(values)
+    return np.where(np.isfinite(numbers), numbers.astype(object), np.array(None)).tolist()
 
 
 def positive(values: np.ndarray) -> np.ndarray:

@@ -156,7 +156,8 @@ def _perceived(engine: Engine, cell: int, world: int) -> tuple[np.ndarray, np.nd
 
     if isinstance(engine.habitat, JaxHabitat):
         seen = embodied(engine.state.bodies)
-        senses = shared(_sense, at(engine.habitat, cell % law.cells))(seen)
+        here: Any = at(engine.habitat, cell % law.cells)
+        senses = shared(type(here).sense, here)(seen)
     else:
         senses, seen = own(engine.state.bodies), embodied(engine.habitat.seen())
     seed, tick = (to_host(each)[world : world + 1] for each in (worlds.seed, worlds.tick))
@@ -167,8 +168,3 @@ def _perceived(engine: Engine, cell: int, world: int) -> tuple[np.ndarray, np.nd
         lambda leaf: np.asarray(leaf)[0], (perceived, memory, seen, thought.action)
     )
     return alone[0], alone[1], Body(alone[2], alone[3])
-
-
-def _sense(habitat: JaxHabitat, bodies: Bodies) -> jax.Array:
-    """Return the senses of bodies."""
-    return habitat.sense(bodies)

@@ -49,7 +49,7 @@ def skyline(cells: Cells, wide: int, tall: int) -> list[Row]:
     living = cells.line != EMPTY
     most = 8 * tall if tall > 1 else 7  # a single row does not touch the row above
     eighths = np.where(living, 1 + np.rint(cells.age * (most - 1)), 0).astype(int)
-    styles = [_hue(line) for line in cells.line.tolist()]
+    styles = [FAINT if line == EMPTY else _style(line % HUES) for line in cells.line.tolist()]
     rows = []
     for below in range(8 * (tall - 1), -1, -8):
         heights = np.clip(eighths - below, 0, 8).tolist()
@@ -133,10 +133,6 @@ def colour(hue: int) -> tuple[int, int, int]:
 @cache
 def _style(hue: int) -> Style:
     return Style(color=Color.from_rgb(*colour(hue)))
-
-
-def _hue(line: int) -> Style:
-    return FAINT if line == EMPTY else _style(line % HUES)
 
 
 @cache

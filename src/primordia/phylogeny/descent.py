@@ -12,6 +12,7 @@ from primordia.errors import InputError
 from primordia.history.ancestry import children, nearest
 from primordia.history.islands import names_of
 from primordia.history.rebuilding import bodies, changes, descent
+from primordia.history.series import plain
 from primordia.law.world import BirthCause, Cause
 from primordia.phylogeny.coalescence import Genealogy
 from primordia.phylogeny.fixation import UNKNOWN, branches, first_ticks
@@ -131,11 +132,11 @@ class Ancestors:
     def step(self, place: int) -> dict[str, Any]:
         """Return an organism of the line as plain values; what is unknown or has not happened is None."""
         line, parent = self.line, int(self.line.parent[place])
-        size = None if self.changes is None else [_known(each) for each in self.changes[place]]
+        size = None if self.changes is None else plain(self.changes[place])
         places = {}
         if self.islands is not None and self.migrations is not None:
             places = {"island": self.islands[place], "migrations": int(self.migrations[place])}
-        body = {name: _known(each[place]) for name, each in (self.traits or {}).items()}
+        body = {name: plain(each[place]) for name, each in (self.traits or {}).items()}
         return {
             "generation": place,
             "organism": int(line.id[place]),
@@ -264,10 +265,6 @@ def _common(genealogy: Genealogy) -> CommonAncestor | None:
         since=int(max(lives.born[row], others.max(initial=0))),  # all others are dead
         generation=len(above),
     )
-
-
-def _known(value: float) -> float | None:
-    return None if np.isnan(value) else float(value)
 
 
 def _happened(tick: int) -> int | None:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from primordia.history.islands import migrants, names_of
+from primordia.history.series import plain
 from primordia.phylogeny import coalescence, slopes
 from primordia.phylogeny.coalescence import Genealogy, Times
 from primordia.phylogeny.diversity import hill_numbers, phylogenetic_diversity
@@ -124,7 +125,7 @@ class WorldLines:
         }
 
     def _line(self, place: int) -> dict[str, Any]:
-        founder, slope = self.founders[place], _number(self.slopes[place])
+        founder, slope = self.founders[place], plain(self.slopes[place])
         null = self.shadow_slopes.get(place)
         return {
             "organism": int(self.lives.id[founder]),
@@ -132,7 +133,7 @@ class WorldLines:
             "slope": slope,
             "slope_per_lifespan": slope and self.lifespan and slope * self.lifespan,
             "neutral_slopes": None if null is None else np.percentile(null, BAND).tolist(),
-            "p_of_slope": _number(self.p_of_slopes[place]),
+            "p_of_slope": plain(self.p_of_slopes[place]),
             "largest_share": float(self.shares[:, place].max()),
             "final_share": float(self.shares[-1, place]),
             "p_of_final_share": float(self.p_of_finals[place]),
@@ -222,10 +223,6 @@ def two_sided(values: np.ndarray, null: np.ndarray) -> np.ndarray:
     at_most = 1 + np.searchsorted(null, values, side="right")
     at_least = 1 + len(null) - np.searchsorted(null, values, side="left")
     return np.minimum(2 * np.minimum(at_most, at_least) / (1 + len(null)), 1.0)
-
-
-def _number(value: float) -> float | None:
-    return None if np.isnan(value) else float(value)
 
 
 def _pairs(times: Times) -> dict[str, Any]:

@@ -11,9 +11,10 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from primordia.errors import Trouble
-from primordia.law.world import BirthCause, Cause, Named
+from primordia.law.world import BirthCause, Cause
 from primordia.phylogeny.phylogeny import ISLAND, MATE, MIGRATIONS, Phylogeny
 from primordia.runs.lives import ALIVE
+from primordia.runs.schema import named
 
 WORLD = 10**12
 """Number of ids of one world. An id is the world times this number, plus the birth number."""
@@ -46,21 +47,22 @@ def batch(some: Phylogeny) -> pa.RecordBatch:
     """Return rows of the table, in the order of the organisms."""
     lives = some.lives
     own, of_births = ids(lives.world, lives.id), dict(some.of_births)
-    mate = of_births.pop(MATE, None)
+    if (mate := of_births.pop(MATE, None)) is not None:
+        mate = pc.add(mate, pa.array(ids(lives.world, 0)))  # null without a mate
     places = {name: of_births.pop(name) for name in (ISLAND, MIGRATIONS) if name in of_births}
     root = lives.parent < 0
     parent = np.where(root, own, ids(lives.world, lives.parent))
     alive = lives.cause == ALIVE
     columns = {
         "id": pa.array(own),
-        "ancestor_list": _lists(parent, root, None if mate is None else _mates(some, mate)),
+        "ancestor_list": _lists(parent, root, mate),
         "ancestor_id": pa.array(parent),
         "origin_time": pa.array(lives.born.astype(np.float64)),
         "destruction_time": pa.array(np.where(alive, np.inf, lives.ended)),
         "world": pa.array(lives.world),
         "cell": pa.array(lives.cell),
-        "birth_cause": _named(lives.birth_cause, BirthCause),
-        "death_cause": _named(lives.cause, Cause, alive),
+        "birth_cause": named(lives.birth_cause, BirthCause),
+        "death_cause": named(lives.cause, Cause, alive),
         "lifespan": pa.array(lives.lifespan),
         **places,
     }
@@ -77,11 +79,6 @@ def ids(world: np.ndarray, number: np.ndarray | int) -> np.ndarray:
     return world.astype(np.int64) * WORLD + number
 
 
-def _mates(some: Phylogeny, mate: pa.Array) -> pa.Array:
-    """Return the ids of mates, int64, null without a mate."""
-    return pc.add(mate, pa.array(ids(some.lives.world, 0)))
-
-
 def _lists(parent: np.ndarray, root: np.ndarray, mate: pa.Array | None) -> pa.Array:
     """Return lists of parents as text, such as `[12]` and `[12,7]`."""
     first = pa.array(parent).cast(pa.string())
@@ -91,8 +88,3 @@ def _lists(parent: np.ndarray, root: np.ndarray, mate: pa.Array | None) -> pa.Ar
         two = pc.binary_join_element_wise(first, mate.cast(pa.string()), ",")
         both = pc.coalesce(two, first)
     return pc.if_else(pa.array(root), ROOT, pc.binary_join_element_wise("[", both, "]", ""))
-
-
-def _named(codes: np.ndarray, names: type[Named], none: np.ndarray | None = None) -> pa.Array:
-    labels = pa.array([each.label for each in names])
-    return pa.DictionaryArray.from_arrays(pa.array(codes, mask=none), labels)

@@ -1,6 +1,6 @@
 """The arms of an experiment side by side: a table of outcomes, effects, and curves."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from primordia.comparison.comparison import Comparison, compare
@@ -33,7 +33,7 @@ def arms(runs: Sequence[Records]) -> dict[str, Any]:
         return {"tables": [], "notes": [], "panels": _over_time(runs, colours)}
     compared = compare(runs)
     return {
-        "tables": [_outcomes(compared), *_effects(compared)],
+        "tables": [_outcomes(compared), _effects(compared)],
         "notes": [
             "Medians over worlds, with quartiles; a world that stopped unsaturated is treated as"
             " censored. Effects: Cliff's delta, and the ratio of medians.",
@@ -63,8 +63,8 @@ def _outcomes(compared: Comparison) -> dict[str, Any]:
     return {"title": "Outcomes", "head": head, "rows": rows}
 
 
-def _effects(compared: Comparison) -> Iterator[dict[str, Any]]:
-    """Yield a table of the effects of all other arms against the reference."""
+def _effects(compared: Comparison) -> dict[str, Any]:
+    """Return a table of the effects of all other arms against the reference."""
     reference, *others = compared.arms
     rows = []
     for arm in others:
@@ -72,7 +72,7 @@ def _effects(compared: Comparison) -> Iterator[dict[str, Any]]:
         texts = (f"{effect_text(each, name)}; {ratio_text(each)}" for name, each in found.items())
         rows.append([arm.name, *texts])
     head = [f"against {reference.name}", *compared.outcomes.values()]
-    yield {"title": "Effects", "head": head, "rows": rows}
+    return {"title": "Effects", "head": head, "rows": rows}
 
 
 def _survival(compared: Comparison, colours: Sequence[str]) -> Panel:

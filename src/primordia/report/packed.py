@@ -22,13 +22,9 @@ def packed(values: np.ndarray, rising: bool = False) -> dict[str, Any]:
     """
     flat = np.asarray(values).ravel()
     kept = np.diff(flat, prepend=flat.dtype.type(0)) if rising else flat
-    kind = _kind(int(kept.max(initial=0)))
+    most = int(kept.max(initial=0))
+    fitting = (kind for kind in ("uint8", "uint16", "uint32") if most <= np.iinfo(kind).max)
+    kind = next(fitting, "float64")
     raw = kept.astype(np.dtype(kind).newbyteorder("<")).tobytes()
     data = base64.b64encode(gzip.compress(raw, mtime=0)).decode("ascii")
     return {"type": kind, "rising": rising, "data": data}
-
-
-def _kind(most: int) -> str:
-    """Return the shortest type that holds all integers from 0 to `most`."""
-    fitting = (kind for kind in ("uint8", "uint16", "uint32") if most <= np.iinfo(kind).max)
-    return next(fitting, "float64")

@@ -13,7 +13,7 @@ from primordia.law.columns import Columns
 from primordia.law.events import DEATHS, birth_columns, sample_columns
 from primordia.law.law import Law
 from primordia.law.metabolism import ONE
-from primordia.law.world import BirthCause, Cause
+from primordia.law.world import BirthCause, Cause, Named
 from primordia.runs.description import Description
 
 TABLES = ("births", "deaths", "metrics")
@@ -99,7 +99,7 @@ class Schema:
             "parent": pa.array(parent, mask=parent == -1),
             "tick": words["tick"],
             "cell": cell,
-            "cause": _named(words["cause"], BirthCause),
+            "cause": named(words["cause"], BirthCause),
             **({} if mate is None else {"mate": pa.array(mate, mask=mate == -1)}),
             **({} if given is None else {"endowment": given.view(np.int32) / ONE}),
             **{name: words[name].view(np.int32) for name in self.notes},
@@ -110,7 +110,7 @@ class Schema:
             "id": words["id"],
             "tick": words["tick"],
             "cell": cell,
-            "cause": _named(words["cause"], Cause),
+            "cause": named(words["cause"], Cause),
             "energy": words["energy"].view(np.int32) / ONE,
             "food": words["food"].view(np.int32) / ONE,
             **{name: words[name].view(np.int32) for name in self.tallies},
@@ -147,6 +147,7 @@ def _own_columns() -> dict[str, set[str]]:
     }
 
 
-def _named(codes: np.ndarray, names: type[BirthCause] | type[Cause]) -> pa.Array:
+def named(codes: np.ndarray, names: type[Named], none: np.ndarray | None = None) -> pa.Array:
+    """Return causes by their names, from their numbers (n,); null where `none`, bool (n,), is true."""
     labels = pa.array([each.label for each in names])
-    return pa.DictionaryArray.from_arrays(pa.array(codes.astype(np.int8)), labels)
+    return pa.DictionaryArray.from_arrays(pa.array(codes.astype(np.int8), mask=none), labels)
