@@ -40,12 +40,7 @@ class Step:
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain values for JSON."""
-        values = asdict(self)
-        return (
-            values
-            if self.island is not None
-            else {k: v for k, v in values.items() if k != "island"}
-        )
+        return {name: value for name, value in asdict(self).items() if value is not None}
 
 
 @dataclass(frozen=True)

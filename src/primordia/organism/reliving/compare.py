@@ -1,7 +1,7 @@
 """A life is lived again and compared with its record."""
 
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -59,11 +59,7 @@ class Reliving:
 
     def to_dict(self) -> dict[str, Any]:
         """Return all values in JSON's types."""
-        respects = [
-            {"name": each.name, "recorded": each.recorded, "relived": each.relived,
-             "agrees": each.agrees}
-            for each in self.respects
-        ]  # fmt: skip
+        respects = [{**asdict(each), "agrees": each.agrees} for each in self.respects]
         own = {
             name: getattr(self, name) for name in ("organism", "world", "begin", "begins", "ends")
         }
