@@ -7,7 +7,7 @@ bodies are stepped in a batch of their own.
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
@@ -27,9 +27,6 @@ from primordia.habitats.contract import (
 )
 from primordia.habitats.on_island import IslandInJax, IslandOnHost, Union
 from primordia.settings.islands import ARRAYS, Islands
-
-if TYPE_CHECKING:
-    pass
 
 
 @register_dataclass

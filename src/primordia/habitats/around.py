@@ -1,23 +1,22 @@
 """Habitats around another habitat: everything is passed on, except what a subclass changes."""
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from functools import wraps
+from typing import Any, TypeVar
 
-import numpy as np
-from jax import Array
+from primordia.habitats.contract import Action, AnyHabitat, Habitat, HostHabitat, JaxHabitat
 
-from primordia.habitats.contract import (
-    Ability,
-    Action,
-    AnyHabitat,
-    Bodies,
-    Habitat,
-    HostHabitat,
-    JaxHabitat,
-    Outcome,
-)
+Method = TypeVar("Method", bound=Callable)
 
-if TYPE_CHECKING:
-    from PIL.Image import Image
+
+def _passed_on(method: Method) -> Method:
+    """Return a method that calls the inner habitat's method of the same name."""
+
+    @wraps(method, updated=())  # without the mark of an abstract method
+    def call(self: "_Around", *given: Any) -> Any:
+        return getattr(self.inner, method.__name__)(*given)
+
+    return call  # type: ignore[return-value]
 
 
 class _Around(Habitat):
@@ -52,25 +51,14 @@ class _Around(Habitat):
     def __hash__(self) -> int:
         return hash(self._key)
 
-    def lacks(self, ability: Ability) -> list[str]:
-        """Return the methods that the inner habitat lacks for an ability."""
-        return self.inner.lacks(ability)
+    lacks = _passed_on(Habitat.lacks)
+    picture = _passed_on(Habitat.picture)
+    picture_scaled = _passed_on(Habitat.picture_scaled)
+    caption = _passed_on(Habitat.caption)
 
     def original(self) -> AnyHabitat | None:
         """Return the inner habitat as the standard benchmark scores it, without this wrapper."""
         return self.inner.original()
-
-    def picture(self, body: Bodies, action: np.ndarray) -> "Image":
-        """Return the inner habitat's picture."""
-        return self.inner.picture(body, action)
-
-    def picture_scaled(self, body: Bodies, action: np.ndarray, factors: np.ndarray) -> "Image":
-        """Return the inner habitat's picture of a body with other parameters."""
-        return self.inner.picture_scaled(body, action, factors)
-
-    def caption(self, body: Bodies, action: np.ndarray) -> str:
-        """Return the inner habitat's caption."""
-        return self.inner.caption(body, action)
 
 
 class AroundJax(_Around, JaxHabitat):
@@ -78,21 +66,10 @@ class AroundJax(_Around, JaxHabitat):
 
     inner: JaxHabitat
 
-    def reset(self, words: Array) -> Bodies:
-        """Return fresh bodies; see `JaxHabitat.reset`."""
-        return self.inner.reset(words)
-
-    def sense(self, bodies: Bodies) -> Array:
-        """Return the senses; see `JaxHabitat.sense`."""
-        return self.inner.sense(bodies)
-
-    def step(self, bodies: Bodies, action: Array) -> tuple[Bodies, Outcome]:
-        """Step all bodies by one tick; see `JaxHabitat.step`."""
-        return self.inner.step(bodies, action)
-
-    def step_scaled(self, bodies: Bodies, action: Array, factors: Array) -> tuple[Bodies, Outcome]:
-        """Step bodies with other parameters by one tick; see `JaxHabitat.step_scaled`."""
-        return self.inner.step_scaled(bodies, action, factors)
+    reset = _passed_on(JaxHabitat.reset)
+    sense = _passed_on(JaxHabitat.sense)
+    step = _passed_on(JaxHabitat.step)
+    step_scaled = _passed_on(JaxHabitat.step_scaled)
 
 
 class AroundHost(_Around, HostHabitat):
@@ -100,45 +77,16 @@ class AroundHost(_Around, HostHabitat):
 
     inner: HostHabitat
 
-    def open(self, cells: int, watched: bool = False) -> None:
-        """Allocate a body for each of N cells; see `HostHabitat.open`."""
-        self.inner.open(cells, watched)
-
-    def reset(self, cells: np.ndarray, words: np.ndarray) -> np.ndarray:
-        """Make fresh bodies in cells (K,); see `HostHabitat.reset`."""
-        return self.inner.reset(cells, words)
-
-    def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
-        """Step the bodies of living cells; see `HostHabitat.step`."""
-        return self.inner.step(action, alive)
-
-    def close(self) -> None:
-        """Release what `open` allocated."""
-        self.inner.close()
-
-    def seen(self) -> Bodies:
-        """Return the bodies for `picture` and `caption`."""
-        return self.inner.seen()
-
-    def set_factors(self, cells: np.ndarray, factors: np.ndarray) -> None:
-        """Multiply parameters of some bodies; see `HostHabitat.set_factors`."""
-        self.inner.set_factors(cells, factors)
-
-    def tally(self) -> np.ndarray:
-        """Return the counts of the inner habitat."""
-        return self.inner.tally()
-
-    def message(self, cell: int) -> str:
-        """Return why the body in a cell failed."""
-        return self.inner.message(cell)
-
-    def save(self) -> dict[str, np.ndarray]:
-        """Return the arrays of the inner habitat."""
-        return self.inner.save()
-
-    def load(self, arrays: dict[str, np.ndarray]) -> None:
-        """Restore what `save` returned."""
-        self.inner.load(arrays)
+    open = _passed_on(HostHabitat.open)
+    reset = _passed_on(HostHabitat.reset)
+    step = _passed_on(HostHabitat.step)
+    close = _passed_on(HostHabitat.close)
+    seen = _passed_on(HostHabitat.seen)
+    set_factors = _passed_on(HostHabitat.set_factors)
+    tally = _passed_on(HostHabitat.tally)
+    message = _passed_on(HostHabitat.message)
+    save = _passed_on(HostHabitat.save)
+    load = _passed_on(HostHabitat.load)
 
 
 def inside(habitat: AnyHabitat, kind: type) -> Any:
