@@ -93,28 +93,17 @@ class Observation:
 
     def unbounded(self) -> np.ndarray:
         """Return which numbers of a row are unbounded, bool (R,)."""
-        return ~np.isfinite(self._bounds()).all(axis=0)
+        return ~np.isfinite(_bounds(self._leaves, (0, 1))).all(axis=0)
 
     def senses(self, scale: np.ndarray, squash: bool) -> "Senses":
         """Return the conversion of rows to senses; see `Senses`."""
-        low, high = self._bounds()
+        low, high = _bounds(self._leaves, (0, 1))
         bounded = np.isfinite(low) & np.isfinite(high) & (high > low)
         low, high = np.where(bounded, low, -scale), np.where(bounded, high, scale)
         blocks: list[Block] = []
         for leaf, own in zip(self._leaves, self._slices, strict=True):
             blocks += [(own, None)] if isinstance(leaf.space, Box) else _choices(leaf, own)
         return Senses((low + high) / 2, (high - low) / 2, squash & ~bounded, blocks)
-
-    def _bounds(self) -> np.ndarray:
-        """Return the least and largest value of each number, infinite without a bound: (2, R)."""
-        rows = []
-        for leaf in self._leaves:
-            space = leaf.space
-            low, high = (space.low, space.high) if isinstance(space, Box) else (0, 1)
-            both = [np.broadcast_to(each, leaf.space.shape or (1,)).ravel() for each in (low, high)]
-            rows.append(np.array(both, float))
-        bounds = np.concatenate(rows, axis=1)
-        return np.where(np.abs(bounds) < UNBOUNDED, bounds, np.copysign(np.inf, bounds))
 
 
 class Senses:
@@ -160,7 +149,7 @@ class Acting:
             raise ValueError("a part of its action space has a single choice; wrap the environment")
         self.kind: Action = single[0] if len(single) == 1 else Compound(tuple(single))
         self.columns = 1 if isinstance(self.kind, Discrete) else _columns(self.kind)
-        self._low, self._high = bounds = self._bounds()
+        self._low, self._high = bounds = _bounds(self._leaves, (-np.inf, np.inf))
         self._bounded = np.isfinite(bounds).all(axis=0)
         low, high = np.where(self._bounded, bounds, [[-1], [1]])
         self._middle, self._half = (low + high) / 2, (high - low) / 2
@@ -178,18 +167,19 @@ class Acting:
         inside = np.where(self._bounded, np.clip(values, -1, 1), values)
         return np.clip(self._middle + self._half * inside, self._low, self._high)
 
-    def _bounds(self) -> np.ndarray:
-        """Return the bounds of each column, infinite for choices and unbounded columns: (2, K)."""
-        rows = []
-        for leaf in self._leaves:
-            low, high = (
-                (leaf.space.low, leaf.space.high)
-                if isinstance(leaf.space, Box)
-                else [np.full(leaf.width, -np.inf), np.full(leaf.width, np.inf)]
-            )
-            rows.append(np.array([np.ravel(low), np.ravel(high)], float))
-        bounds = np.concatenate(rows, axis=1)
-        return np.where(np.abs(bounds) < UNBOUNDED, bounds, np.copysign(np.inf, bounds))
+
+def _bounds(parts: list[Leaf], of_choices: tuple[float, float]) -> np.ndarray:
+    """Return the least and largest value of each number of parts, infinite without a bound: (2, K).
+
+    `of_choices` are those of a number that is not part of a Box.
+    """
+    rows = []
+    for leaf in parts:
+        space = leaf.space
+        both = (space.low, space.high) if isinstance(space, Box) else of_choices
+        rows.append([np.broadcast_to(each, space.shape or (leaf.width,)).ravel() for each in both])
+    bounds = np.concatenate(rows, axis=1, dtype=float)
+    return np.where(np.abs(bounds) < UNBOUNDED, bounds, np.copysign(np.inf, bounds))
 
 
 def _slices(parts: list[Leaf]) -> list[slice]:
