@@ -21,8 +21,9 @@ import numpy as np
 import pandas as pd
 from by_world import Row, illustrate, measure
 from matplotlib.figure import Figure
-from plasticity import learning, memories, players_of
+from plasticity import learning, memories
 
+from primordia.assays.shadow import reborn
 from primordia.figures import style
 from primordia.habitats.contract import AnyHabitat
 from primordia.history.series import spaced
@@ -86,7 +87,7 @@ def sampled(run: Records) -> list[tuple[str, int, np.ndarray]]:
 def games_of(run: Records, rows: np.ndarray) -> dict[str, np.ndarray]:
     """Return what organisms do in their games, float64 (K,) each; INNATE and so on if they learn."""
     real, shadows = (
-        players_of(run, rows, redrawn)._replace(
+        reborn(run, rows, redrawn)._replace(
             law=replace(run.law, metabolism=None), habitat=unchanging(run)
         )
         for redrawn in (False, True)

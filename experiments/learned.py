@@ -9,16 +9,13 @@ to `results/` beside the file, as Markdown and CSV.
 """
 
 from pathlib import Path
-from typing import Any
 
 import named
-from games import write_rows
+from by_world import Row, measure
 
 import primordia
 from primordia.assays.ablate import ablate
 from primordia.assays.subjects import of_run
-from primordia.comparison.tables import spread_text
-from primordia.experiments.results import table
 from primordia.runs.records import Records
 
 LATE, LONG = 0.75, 1000
@@ -27,17 +24,16 @@ GAMES, TICKS = 5, 10_000
 
 def report(file: Path) -> None:
     """Measure all arms of an experiment, and write the table."""
-    rows, hazard = [], 0.0
-    for folder in named.arms(file):
-        run = primordia.load(folder).opened()
-        hazard = run.config.hazard
-        rows += [{"arm": folder.name, **row} for row in worlds_of(run)]
-        print(f"{folder.name} is done", flush=True)
-    text = summary(rows, (1 - hazard) ** LONG)
-    write_rows(file.parent / "results" / f"{file.stem}-learned", rows, text)
+    hazard = primordia.load(named.arms(file)[-1]).opened().config.hazard
+    note = (
+        f"Late-born: the last quarter of a world's births. If accidents were the only cause of death,"
+        f" {(1 - hazard) ** LONG:.3f} of them would live {LONG:,} ticks. Champions live {GAMES} lives of"
+        f" at most {TICKS:,} ticks without accidents, and the same lives without plasticity."
+    )
+    measure(file, "learned", worlds_of, note)
 
 
-def worlds_of(run: Records) -> list[dict[str, Any]]:
+def worlds_of(run: Records) -> list[Row]:
     """Return a row for each world."""
     lost = ablate(of_run(run), games=GAMES, ticks=TICKS)
     innate = {each.world: each for each in lost if each.without == "plasticity"}
@@ -56,22 +52,6 @@ def worlds_of(run: Records) -> list[dict[str, Any]]:
             }
         )
     return rows
-
-
-def summary(rows: list[dict[str, Any]], by_accident: float) -> str:
-    """Return a table of medians and quartiles over worlds."""
-    lines, columns = [], list(rows[0])[2:]
-    for arm in dict.fromkeys(row["arm"] for row in rows):
-        worlds = [row for row in rows if row["arm"] == arm]
-        known = [[row[column] for row in worlds if row[column] != ""] for column in columns]
-        lines.append([arm, len(worlds), *(spread_text(each) if each else "" for each in known)])
-    note = (
-        f"Medians over worlds (quartiles). Late-born: the last quarter of a world's births. If accidents"
-        f" were the only cause of death, {by_accident:.3f} of them would live {LONG:,} ticks. Champions"
-        f" live {GAMES} lives of at most {TICKS:,} ticks without accidents, and the same lives without"
-        " plasticity."
-    )
-    return f"{table(['arm', 'worlds', *columns], lines)}\n\n{note}"
 
 
 if __name__ == "__main__":

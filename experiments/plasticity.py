@@ -12,19 +12,14 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import jax
 import jax.numpy as jnp
 import named
 import numpy as np
 from by_world import measure
 
-from primordia.history import pedigree
-from primordia.history.climate import PastClimate
-from primordia.law.metabolism import Rates
+from primordia.assays.shadow import reborn
 from primordia.organism.playing.games import Players, stretches
 from primordia.organism.playing.seats import Manner
-from primordia.random.keys import Purpose, stream
-from primordia.random.wide import wide
 from primordia.runs.records import Records
 
 LATE, ORGANISMS, TICKS = 0.75, 50, 256
@@ -49,7 +44,7 @@ def worlds_of(run: Records) -> list[dict[str, Any]]:
         own = np.flatnonzero(late & (lives.world == world))
         some = own[:: max(1, len(own) // ORGANISMS)][:ORGANISMS]
         (learns, lived), (drifts, _) = (
-            learning(players_of(run, some, redrawn)) for redrawn in (False, True)
+            learning(reborn(run, some, redrawn)) for redrawn in (False, True)
         )
         rows.append(
             {
@@ -62,15 +57,6 @@ def worlds_of(run: Records) -> list[dict[str, Any]]:
             }
         )
     return rows
-
-
-def players_of(run: Records, rows: np.ndarray, redrawn: bool) -> Players:
-    """Return organisms, or their neutral shadows if `redrawn`, as players with fresh keys."""
-    lives = run.lives.take(rows)
-    keys = stream(wide(run.world_seeds[lives.world]), Purpose.REBIRTH, wide(lives.id))
-    rates = Rates.of(jax.tree.map(jnp.asarray, PastClimate(run).of_lives(lives, lives.born)))
-    genomes = pedigree.genomes(run, rows, redrawn)
-    return Players(run.law, run.config.build_habitat(), genomes, keys, rates)
 
 
 def learning(players: Players) -> tuple[np.ndarray, np.ndarray]:

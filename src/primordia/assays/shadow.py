@@ -151,11 +151,16 @@ def _sample(worlds: np.ndarray, rows: np.ndarray, most: int) -> np.ndarray:
 
 
 def _lifespans(run: Records, rows: np.ndarray, redrawn: bool, cut: int) -> np.ndarray:
-    """Return the ticks that organisms or their shadows live, each with its own fresh key, (K,)."""
+    """Return the ticks that organisms or their shadows live, (K,)."""
+    return lifespans(reborn(run, rows, redrawn), cut)
+
+
+def reborn(run: Records, rows: np.ndarray, redrawn: bool) -> Players:
+    """Return organisms, or their shadows if `redrawn`, as players, each with its own fresh key."""
     lives = run.lives.take(rows)
     climate = PastClimate(run).of_lives(lives, lives.born)
     keys = stream(wide(run.world_seeds[lives.world]), Purpose.REBIRTH, wide(lives.id))
     rates = Rates.of(jax.tree.map(jnp.asarray, climate))
     genomes = pedigree.genomes(run, rows, redrawn)
     habitat, island = run.config.build_habitat(), run.config.islands.of_cells(lives.cell)
-    return lifespans(Players(run.law, habitat, genomes, keys, rates, island), cut)
+    return Players(run.law, habitat, genomes, keys, rates, island)
