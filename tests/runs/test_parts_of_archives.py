@@ -116,7 +116,7 @@ def test_a_description_has_what_readers_need(kept: int | None, mates: bool) -> N
     act = "act" if mates else None
     law: Any = SimpleNamespace(heredity=heredity, act=act, beginning=(("hazard", 0.5),))
     habitat: Any = SimpleNamespace(rate=None, tallies=("score", "lives"))
-    about = Description.of(law, habitat, {"a.py": "1"})
+    about = Description.of(law, habitat, {"a.py": "1"}, "", {})
     assert (about.moments, about.mates, about.endowed) == (kept or 0, mates, mates)
     assert (about.rate, about.tallies, about.notes) == (None, ("score", "lives"), ("step",))
     assert about.beginning == {"hazard": 0.5}

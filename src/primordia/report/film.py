@@ -26,10 +26,7 @@ def film(ground: Ground, config: Config) -> dict[str, Any] | None:
         bits and the shade of the age in the upper 3. `places`, `ticks` and `alive` have a value for
         each picture.
     """
-    try:
-        rows, columns = config.placement.shape(config.cells)
-    except ValueError:  # no run begins with such settings
-        return None
+    rows, columns = config.placement.shape(config.cells)
     count = min(PICTURES, BYTES // ground.share // config.cells, len(ground.lives))
     if rows == 1 or count < 2:
         return None

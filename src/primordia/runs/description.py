@@ -3,9 +3,7 @@
 The description is written into the run, so that records can be read without these parts' code.
 """
 
-from collections.abc import Mapping
 from pathlib import Path
-from types import MappingProxyType
 from typing import Annotated, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
@@ -18,7 +16,6 @@ from primordia.law.law import Law
 from primordia.settings.values import LARGEST
 
 FILE = "description.json"
-EMPTY: Mapping[str, str] = MappingProxyType({})
 Model = TypeVar("Model", bound=BaseModel)
 
 
@@ -56,8 +53,8 @@ class Description(BaseModel):
         law: Law,
         habitat: AnyHabitat,
         code: dict[str, str],
-        files_from: str = "",
-        files: Mapping[str, str] = EMPTY,
+        files_from: str,
+        files: dict[str, str],
     ) -> "Description":
         """Return the description of a run."""
         return cls(
@@ -72,7 +69,7 @@ class Description(BaseModel):
             beginning=dict(law.beginning),
             blocks=dict(law.heredity.layout.blocks),
             code=code,
-            files=dict(files),
+            files=files,
             files_from=files_from,
         )
 

@@ -114,7 +114,7 @@ function series(curve) {
 function bandsOf(curves) {
   return curves.flatMap((curve, i) => {
     if (curve.kind !== "high") return [];
-    const fill = curveColour(curve.colour).replace("rgb(", "rgb(").replace(")", " / 22%)");
+    const fill = curveColour(curve.colour).replace(")", " / 22%)");
     return [{ series: [i + 1, i + 2], fill }];
   });
 }
