@@ -19,7 +19,7 @@ import pyarrow.compute as pc
 import primordia
 from primordia import Run
 from primordia.runs.lives import Lives
-from tests.strange import STRANGE, TICKS
+from tests.strange import PASSING, STRANGE, TICKS
 
 FILE = Path(__file__).with_suffix(".json")
 PLAIN = ("world", "tick", "population", "births", "extinctions", "organism_ticks", "mean_age",
@@ -310,8 +310,9 @@ def others() -> Iterator[tuple[str, Case]]:
             ],
         ),
     )
-    strange = {name: value for name, value in STRANGE.items() if name != "task"}
-    yield "strange", toy(strange, stop=ticks(TICKS))
+    for name, world in (("strange", STRANGE), ("passing", PASSING)):
+        settings = {key: value for key, value in world.items() if key != "task"}
+        yield name, toy(settings, stop=ticks(TICKS))
 
 
 CASES = dict([*tasks(), *placements(), *others()])

@@ -1,4 +1,7 @@
-"""Worlds in which children begin with what their parents have learned keep the promises."""
+"""Worlds in which children begin with what their parents have learned: lives are lived again.
+
+`test_strange.py` tests the promises in the same worlds.
+"""
 
 from dataclasses import replace
 from pathlib import Path
@@ -16,9 +19,8 @@ from primordia.organism.reliving.course import Course, recorded
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import loop
 from primordia.runs.archive import Archive
-from tests.engine.test_strange import digests, live_in_parts
-from tests.history.test_rebuilding import assert_rebuilt
-from tests.strange import PASSING, TICKS
+from tests.engine.test_strange import live_in_parts
+from tests.strange import PASSING
 from tests.worlds import MEADOW, Lived, config
 
 LEARNING: dict[str, Any] = {
@@ -57,13 +59,6 @@ def first_of(generation: np.ndarray, which: np.ndarray) -> int:
 
 def life(run: Archive, row: int) -> RelivedLife:
     return RelivedLife.of(run, int(run.lives.id[row]), int(run.lives.world[row]))
-
-
-def test_parts_and_chunks_of_any_length_make_the_same_run(run: Path) -> None:
-    """`make slow` also lives each world alone, and both on the host, in `test_strange.py`."""
-    assert digests(run) == Lived(config(PASSING), TICKS, chunk=11).digests()
-    assert primordia.load(run).verify() == []
-    assert_rebuilt(run)
 
 
 def test_late_descendants_live_again_as_recorded(run: Path) -> None:

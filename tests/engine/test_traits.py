@@ -70,6 +70,7 @@ def test_parts_and_chunks_of_any_length_make_the_same_run(run: Path, lived: Live
     assert_rebuilt(run)
 
 
+@pytest.mark.slow
 def test_a_habitat_on_the_host_lives_the_same_lives(lived: Lived) -> None:
     held = {**POLES["habitat"], "name": "tests.habitats.test_parameters:HeldPoles"}
     hosted = Lived(config({**POLES, "habitat": held}), TICKS)

@@ -15,7 +15,8 @@ from primordia.config import load, validated
 from primordia.envs import LifeEnv
 from primordia.errors import InputError
 from primordia.habitats.cartpole.habitat import CartPole
-from primordia.habitats.traits import Traits
+from primordia.habitats.traits import Traits, with_traits
+from tests.habitats.test_parameters import HeldPoles
 
 TRAITS = Traits.of(
     {
@@ -93,6 +94,31 @@ def test_pictures_and_captions_show_traits() -> None:
     half = changed.inner.picture_scaled(one.inner, np.int32(1), np.float32([1, 0.5, 1, 1, 1]))
     assert changed.picture(one, np.int32(1)).tobytes() == half.tobytes()
     assert half.tobytes() != changed.inner.picture(one.inner, np.int32(1)).tobytes()
+
+
+def test_bodies_on_the_host_move_as_those_in_jax() -> None:
+    """Also after they are saved and loaded, with further factors, and after another birth in a cell."""
+    traits = {"pole": {"of": ["pole-length", "pole-mass"], "least": 0.1, "most": 4.0}}
+    in_jax = poles(**traits)
+    held: Any = with_traits(HeldPoles(), Traits.of(traits))
+    rng = np.random.default_rng(5)
+    words = rng.integers(0, 2**32, (6, in_jax.words), np.uint32)
+    words[:, 0] = rng.normal(size=6).astype(np.float32).view(np.uint32)
+    held.open(6)
+    held.reset(np.arange(6), words[::-1])
+    held.reset(np.arange(6), words)
+    bodies, factors = in_jax.reset(words), np.ones((6, 5), np.float32)
+    step = shared(type(in_jax).step_scaled, in_jax)
+    for tick, action in enumerate(rng.integers(0, 2, (9, 6), np.int32)):
+        if tick == 3:
+            held.load({name: each.copy() for name, each in held.save().items()})
+        if tick == 6:
+            factors[2:4, 0] = 3.0
+            held.set_factors(np.arange(6), factors)
+        bodies, _ = step(bodies, action, factors)
+        senses, _ = held.step(action, np.ones(6, bool))
+        np.testing.assert_array_equal(senses, np.asarray(in_jax.sense(bodies)))
+    assert len(set(senses[:, 2].tolist())) > 1
 
 
 def test_an_environment_has_the_body_of_founders() -> None:
