@@ -14,6 +14,7 @@ from primordia.compiled import shared
 from primordia.law.heredity import Heredity
 from primordia.mutations.gaussian import Gaussian
 from primordia.runs import loop
+from primordia.runs.archive import Archive
 from primordia.settings.base import Settings
 from tests.toys import Meadow
 from tests.worlds import HERD, MILL, config
@@ -42,7 +43,7 @@ def test_a_run_with_another_seed_and_end_compiles_nothing(
     caplog: pytest.LogCaptureFixture,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """A run with other chances compiles nothing but its worlds at the beginning."""
+    """Nor does one with other rates, which seasons may change."""
 
     def live(name: str, **settings: Any) -> None:
         loop.start(config({**base, **settings}), tmp_path / name)
@@ -55,8 +56,11 @@ def test_a_run_with_another_seed_and_end_compiles_nothing(
         live("second", seed=2, stop={"ticks": 55})
         loop.resume(tmp_path / "first", {"ticks": 60})
         assert compilations(caplog) == []
-        live("third", replication=0.1, hazard=0.03, stop={"ticks": 40})
-    assert all("empty_worlds" in message for message in compilations(caplog))
+        rates = {"replication": 0.1, "hazard": 0.03, "metabolism": {"store": 90.0, "drain": 2.0}}
+        live("third", **rates, stop={"ticks": 40})
+    assert compilations(caplog) == []
+    one, other = (Archive(tmp_path / name).lives.lifespan for name in ("second", "third"))
+    assert one.tolist() != other.tolist()
 
 
 def test_a_class_with_the_same_name_and_settings_shares_no_code() -> None:

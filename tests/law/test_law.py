@@ -5,9 +5,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from primordia.law.metabolism import ONE
 from tests.chance import binomial, even
 from tests.chronicle import History
-from tests.worlds import CLOCKWORK, MEADOW, RING, Lived, config
+from tests.worlds import CLOCKWORK, HERD, MEADOW, RING, Lived, config, law_of
 
 SMALL = {"brain": {"kind": "feed-forward", "hidden": 1}}
 
@@ -163,3 +164,35 @@ def test_genesis_can_fill_every_cell() -> None:
         assert births["id"][in_world].tolist() == [*range(64)]
         assert {(life.cause, life.age) for life in history.dead} == {("starved", 31)}
     assert len(np.unique(run.genomes(), axis=0)) == 32
+
+
+@pytest.mark.parametrize(
+    ("change", "same"),
+    [
+        ({"cells": 30, "seeds": 1, "replication": 0.2, "hazard": 0.0, "genesis": "fill"}, True),
+        ({"placement": {"topology": "ring"}, "sample_every": 7, "saturation_ticks": 9}, True),
+        ({"mutation": {"kind": "heritable"}, "recombination": {"probability": 0.5}}, True),
+        ({"metabolism": {"store": 30.0, "gain": 2.0}}, True),
+        ({"seasons": [{"kind": "schedule", "setting": "hazard", "at": 9, "value": 0.5}]}, True),
+        ({"brain": {"hidden": 2}}, False),
+        ({"brain": {"hidden": 1, "interoception": True}}, False),
+        ({"metabolism": "none"}, False),
+        ({"replication": {"kind": "act"}}, False),
+    ],
+)
+def test_lives_share_code_if_all_that_they_meet_is_the_same(change: Any, same: bool) -> None:
+    one, other = law_of(HERD).alone, law_of(HERD, **change).alone
+    assert (one == other) is same
+    assert (hash(one) == hash(other)) is same
+
+
+def test_an_organism_that_perceives_its_energy_has_its_own_store() -> None:
+    feeling = {"brain": {"hidden": 1, "interoception": True}}
+    few, many = (law_of(HERD, **feeling, metabolism={"store": n}) for n in (30.0, 60.0))
+    assert few.alone != many.alone
+    assert few.compiled != many.compiled
+    energy = np.array([15 * ONE], np.int32)
+    seen = [
+        np.asarray(law.alone.perceived(np.zeros((1, 2), np.float32), energy)) for law in (few, many)
+    ]
+    assert [each[0, -1] for each in seen] == [0.5, 0.25]

@@ -54,6 +54,7 @@ def law(
     """Return what the view asks of a law."""
     placement = Placement.model_validate({"topology": topology})
     return SimpleNamespace(
+        alone="the law of an organism alone",
         cells=cells,
         worlds=worlds,
         placement=placement,

@@ -140,7 +140,7 @@ def test_an_organism_senses_with_its_own_body_on_its_own_island(
     def shared(function: Any, of: Any) -> Any:
         def called(*values: Any) -> Any:
             given.append((of, values))
-            return SimpleNamespace(action=jnp.zeros((1, 2))) if of is made.law else values[0]
+            return SimpleNamespace(action=jnp.zeros((1, 2))) if of is made.law.alone else values[0]
 
         return called
 

@@ -1,7 +1,7 @@
 """Bodies at birth."""
 
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -13,14 +13,14 @@ from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.organism.test_life import assert_ends_as_recorded
 from tests.toys import Slope
-from tests.worlds import MEADOW, config
+from tests.worlds import MEADOW, config, law_of
 
 
 def test_a_body_alone_starts_as_one_among_many() -> None:
     """Compiled code may round a product and a sum once, and several bodies may be born as vectors."""
     words = np.random.default_rng(3).integers(0, 2**32, (64, 2), np.uint32)
-    nothing: Any = None
-    alone = LifeInJax(nothing, nothing, Slope())
+    law, no_mind = law_of(MEADOW), cast(Any, None)
+    alone = LifeInJax(law, no_mind, Slope())
     bodies = np.concatenate([alone.embody(each[None]) for each in words])
     np.testing.assert_array_equal(bodies, jit(Slope().reset)(words))
 

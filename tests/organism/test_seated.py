@@ -17,7 +17,10 @@ def players(count: int, kind: str = "host") -> Players:
     genomes = np.repeat(np.arange(count, dtype=np.float32)[:, None], 2, axis=1)
     none: Any = None
     habitat: Any = SimpleNamespace(kind=kind)
-    return Players("a law", habitat, genomes, wide(np.arange(count) + 10), none)
+    return Players(LAW, habitat, genomes, wide(np.arange(count) + 10), none)
+
+
+LAW: Any = SimpleNamespace(alone="the law of an organism alone")
 
 
 def script(count: int) -> Games:
@@ -42,7 +45,7 @@ def test_the_games_of_a_player_are_adjacent_and_numbered(
     manner = Manner(70, frozen(3), watched=True)
     found: Any = stretches(players(3, kind), 2, manner, script(3))
     where, law, habitat, seated, given = found
-    assert (where, law, habitat.kind) == (kind, "a law", kind)
+    assert (where, law, habitat.kind) == (kind, LAW.alone, kind)
     assert seated.genomes.tolist() == [[k, k] for k in (0, 0, 1, 1, 2, 2)]
     assert seated.keys.lo.tolist() == [10, 10, 11, 11, 12, 12]
     assert seated.cells.tolist() == [0, 1, 0, 1, 0, 1]

@@ -50,18 +50,20 @@ def small_segments() -> Iterator[None]:
         yield
 
 
-def recorded(folder: Path, fork: bool) -> Recorded:
-    """Live a run, from an ancestor of another run or as its fork, with many checkpoints."""
+def recorded(folder: Path, kind: str) -> Recorded:
+    """Live a run, with many checkpoints: a new one, one with an ancestor, or a fork of another."""
     loop.start(config(SETTINGS), folder / "source")
     source = primordia.load(folder / "source")
-    source.export(folder / "ancestor.safetensors", 0)
-    settings = config(SETTINGS, ancestors=[str(folder / "ancestor.safetensors")])
+    settings = config(SETTINGS, seed=2)
+    if kind == "descendants":
+        source.export(folder / "ancestor.safetensors", 0)
+        settings = config(SETTINGS, ancestors=[str(folder / "ancestor.safetensors")])
     root = folder / "disk"
     root.mkdir()
     disk, run, saved = Disk(root), root / "some" / "run", list[tuple[int, int]]()
     with pytest.MonkeyPatch.context() as patch, disk.watched():
         patch.setattr(checkpoint, "save", noting(checkpoint.save, disk, saved))
-        if fork:
+        if kind == "fork":
             source.fork(HALF // 2, run, seed=7)
             saved.append((len(disk.instants), HALF // 2))
         else:
@@ -81,11 +83,13 @@ def noting(save: Any, disk: Disk, saved: list[tuple[int, int]]) -> Any:
     return noted
 
 
-@pytest.fixture(scope="module", params=["run", "fork"])
+@pytest.fixture(
+    scope="module", params=["run", "fork", pytest.param("descendants", marks=pytest.mark.slow)]
+)
 def lived(
     request: pytest.FixtureRequest, small_segments: None, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[Recorded]:
-    result = recorded(tmp_path_factory.mktemp("power"), fork=request.param == "fork")
+    result = recorded(tmp_path_factory.mktemp("power"), request.param)
     yield result
     result.disk.close()
 

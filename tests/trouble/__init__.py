@@ -17,7 +17,7 @@ from tests.commands import here
 
 TASK = "CartPole-survival"
 HALF, TICKS = 1_500, 4_000
-SMALL = (TASK, "--cells", "8", "--hazard", "0.002", "--sample_every", "500", "--quiet")
+SMALL = (TASK, "--cells", "8", "--hazard", "0.002", "--quiet")
 
 
 def interrupt_after(run: Path, ticks: int) -> None:
@@ -84,5 +84,5 @@ def newest(run: Path) -> Path:
 
 def started(run: Path, listen: Callable[[loop.Status], None] | None = None) -> None:
     """Live a run to TICKS, with a checkpoint after every chunk."""
-    settings = {"cells": 8, "hazard": 0.002, "sample_every": 500, "stop": {"ticks": TICKS}}
+    settings = {"cells": 8, "hazard": 0.002, "stop": {"ticks": TICKS}}
     loop.start(config.load(TASK, settings), run, checkpoint_every=0.0, listen=listen)

@@ -122,7 +122,7 @@ def test_odd_names_are_written_or_refused_with_one_line(
 FRESH = count()
 OWN = tomli_w.dumps(
     {**settings_of("cartpole_survival.toml"), "task": "T", "about": "A", "cells": 8,
-     "hazard": 0.002, "sample_every": 500}
+     "hazard": 0.002}
 )  # fmt: skip
 """A task of the user's, in the law of SMALL."""
 

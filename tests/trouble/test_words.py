@@ -196,7 +196,7 @@ def test_a_command_without_words_prints_help() -> None:
 
 def test_flags_may_stand_before_the_task(tmp_path: Path) -> None:
     run = tmp_path / "run"
-    words = ("--cells", "8", "--hazard=0.002", TASK, "--sample_every", "500", "--quiet")
+    words = ("--cells", "8", "--hazard=0.002", TASK, "--quiet")
     done = here("run", *words, "--ticks", 10, "--out", run)
     assert (done.returncode, done.stderr) == (0, "")
     assert json.loads(here("info", run, "--json").stdout)["cells"] == 8

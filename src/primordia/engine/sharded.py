@@ -25,7 +25,7 @@ from primordia.habitats.contract import JaxHabitat
 from primordia.law import events as log
 from primordia.law.columns import Columns
 from primordia.law.events import BIRTHS, DEATHS, Events, Rows, sample_columns
-from primordia.law.genesis import empty_worlds
+from primordia.law.genesis import beginning, empty_worlds
 from primordia.law.law import Law
 from primordia.random.wide import Wide, wide
 from primordia.rounding import rounded
@@ -46,7 +46,7 @@ class ShardedChunks(FusedChunks):
         self._share = replace(law, worlds=law.worlds // len(devices))
         mesh = Mesh(np.array(devices), (AXIS,))
         self._split = NamedSharding(mesh, SPLIT)
-        self._advance = shared(_advance, mesh, self._share, habitat, donate=(0, 1))
+        self._advance = shared(_advance, mesh, self._share.compiled, habitat, donate=(0, 1))
         self._lists: Events = shared(_empty, mesh, self._share)()
         self.events = self._joined()
 
@@ -110,7 +110,7 @@ def _on_each(mesh: Mesh, function: Callable, *given: PartitionSpec | tuple) -> C
 def _begin(mesh: Mesh, law: Law, habitat: JaxHabitat, seed: Wide) -> State:
     def on_one(seed: Wide) -> State:
         bodies = placeholder_bodies(habitat, law.worlds * law.cells)
-        return State(empty_worlds(law, seed), bodies)
+        return State(empty_worlds(law, seed, beginning(law)), bodies)
 
     return _on_each(mesh, on_one, SPLIT)(seed)
 

@@ -17,6 +17,7 @@ from primordia.law.metabolism import ONE, Metabolism
 from primordia.law.motor import Motor
 from primordia.law.placement import Placement
 from primordia.law.seasons import Ratchet, Schedule
+from primordia.mutations.gaussian import Gaussian
 from primordia.settings.islands import Islands
 
 
@@ -122,15 +123,39 @@ class Law:
     def compiled(self) -> "Law":
         """Return the law that stands for all laws with the same compiled code.
 
-        They differ in their chances of replication and of accidents at the beginning, which are in the
-        climate of a world; only whether there are accidents is compiled.
+        They differ in what seasons may change, which is in the climate of a world. Compiled are only
+        whether there are accidents, and the store of those that perceive their energy.
         """
-        chances = {"replication": 0.0, "hazard": float(self.has_hazard)}
-        beginning = tuple(
-            (name, chances.get(self.islands.split(name)[1], value))
-            for name, value in self.beginning
+        kept = {"hazard": float(self.has_hazard)}
+        if self.interoception:
+            kept["metabolism.store"] = dict(self.beginning)["metabolism.store"]
+        beginning = tuple((name, kept.get(self.islands.split(name)[1], 0.0)) for name in self.rates)
+        return replace(self, beginning=beginning, metabolism=self.metabolism and Metabolism())
+
+    @property
+    def alone(self) -> "Law":
+        """Return the law of an organism without a world, which lives again or plays.
+
+        It stands for all laws that differ in nothing that such an organism meets, so these share the
+        compiled code of its life.
+        """
+        heredity = replace(
+            self.heredity, mutation=Gaussian(), recombination=None, ancestors=None, worlds=1
         )
-        return replace(self, beginning=beginning)
+        beginning = tuple(pair for pair in self.compiled.beginning if pair[0] == "metabolism.store")
+        return replace(
+            self.compiled,
+            worlds=1,
+            cells=1,
+            islands=Islands(("",), (0, 1)),
+            heredity=heredity,
+            placement=Placement(),
+            beginning=beginning,
+            genesis="one",
+            seasons=(),
+            saturation_ticks=1,
+            sample_every=1,
+        )
 
     @property
     def cell_numbers(self) -> Array:

@@ -163,7 +163,7 @@ def _perceived(engine: Engine, cell: int, world: int) -> tuple[np.ndarray, np.nd
     seed, tick = (to_host(each)[world : world + 1] for each in (worlds.seed, worlds.tick))
     mind = Mind(own(organisms.genome), wide(seed), jnp.array([cell % law.cells], jnp.int32))
     memory, perceived = own(organisms.memory), law.perceived(senses, own(organisms.energy))
-    thought = shared(think, law)(mind, memory, perceived, wide(tick + np.uint64(1)))
+    thought = shared(think, law.alone)(mind, memory, perceived, wide(tick + np.uint64(1)))
     alone = jax.tree.map(
         lambda leaf: np.asarray(leaf)[0], (perceived, memory, seen, thought.action)
     )

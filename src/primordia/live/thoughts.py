@@ -55,7 +55,7 @@ def rows(
         return []
     blocks = engine.state.world.organisms.genome
     genome = {name: np.asarray(block)[cell : cell + 1] for name, block in blocks.items()}
-    _, inside = shared(look, law)(genome, memory[None], senses[None])
+    _, inside = shared(look, law.alone)(genome, memory[None], senses[None])
     output, shown = jax.tree.map(lambda each: np.asarray(each)[0], inside)
     found = [[_name("outputs"), *_bars(output, acting(law.action, output))]]
     for name, values in shown.items():

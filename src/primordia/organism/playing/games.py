@@ -177,7 +177,7 @@ def stretches(
     players: Players, games: int, manner: Manner, script: Games | None = None
 ) -> Iterator[Stretch]:
     """Begin all games of K players of one island, and play them in the manner given for each player."""
-    law, habitat = players.law, players.habitat
+    law, habitat = players.law.alone, players.habitat
     player = np.repeat(np.arange(len(players.genomes)), games)
     genomes, keys, rates, _ = players.take(player)[2:]
     game = np.tile(np.arange(games, dtype=np.int32), len(players.genomes))

@@ -23,7 +23,7 @@ class LifeInJax:
 
     def __init__(self, law: Law, mind: Mind, habitat: JaxHabitat) -> None:
         self._mind, self._habitat = mind, habitat
-        self._lived = shared(_lived, law, habitat)
+        self._lived = shared(_lived, law.alone, habitat)
 
     def embody(self, words: Array) -> Bodies:
         """Return a fresh body from random words uint32 (1, words)."""

@@ -24,8 +24,8 @@ class LifeOnHost:
 
     def __init__(self, law: Law, mind: Mind, habitat: HostHabitat, watched: bool) -> None:
         habitat.open(1, watched)
-        self._law, self._mind, self._habitat = law, mind, habitat
-        self._think, self._judged = shared(think, law), shared(judged, law)
+        self._law, self._mind, self._habitat = law.alone, mind, habitat
+        self._think, self._judged = (shared(each, self._law) for each in (think, judged))
 
     def embody(self, words: Array) -> np.ndarray:
         """Make a fresh body from random words uint32 (1, words). Return senses (1, S)."""

@@ -99,7 +99,7 @@ class Panels:
         life, n = self._life, len(stretch.tick)
         senses = np.zeros((1 << (n - 1).bit_length(), stretch.senses.shape[1]), np.float32)
         senses[:n] = stretch.senses  # few lengths are compiled
-        self._memory, inside = shared(look_on, life.law)(life.genome, self._memory, senses, n)
+        self._memory, inside = shared(look_on, life.law.alone)(life.genome, self._memory, senses, n)
         self._output, self._shown = jax.tree.map(lambda each: np.asarray(each)[:n], tuple(inside))
         shown = [each.reshape(n, -1) for each in self._shown.values()]
         values = np.concatenate(shown or [squashed(self._output)], axis=1)

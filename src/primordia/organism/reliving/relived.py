@@ -158,7 +158,7 @@ class RelivedLife:
         for parent, child in steps(list(pairwise(line)), "living ancestors again"):
             own = memory if parent.stored is None else None
             at_birth = replace(parent, first=own)._memory_at(child.begins)
-            memory = shared(first_memory, self.law)(at_birth, a_child)
+            memory = shared(first_memory, self.law.alone)(at_birth, a_child)
         return memory
 
     def _memory_at(self, tick: int) -> Array:
