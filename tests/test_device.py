@@ -41,7 +41,7 @@ import primordia
 primordia.load(sys.argv[1]).organism(3).genome()
 assert settings() == before
 assert {**os.environ, "XLA_FLAGS": ""} == {**variables, "XLA_FLAGS": ""}
-law = {"cells": 8, "hazard": 0.002, "sample_every": 500}
+law = {"cells": 8, "hazard": 0.002}
 primordia.run("CartPole-survival", sys.argv[2], **law, stop={"ticks": 50})
 assert settings() == before
 print(primordia.load(sys.argv[2]).info()["versions"]["instruction_set"], os.environ["XLA_FLAGS"])
@@ -58,7 +58,7 @@ on_x86 = pytest.mark.skipif(
 def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run in a law of other tests, whose code is kept for the processes that tests start."""
     path = tmp_path_factory.mktemp("device") / "run"
-    law = {"cells": 8, "hazard": 0.002, "sample_every": 500}
+    law = {"cells": 8, "hazard": 0.002}
     return primordia.run("CartPole-survival", path, **law, stop={"ticks": 50}).path
 
 

@@ -69,6 +69,7 @@ def test_parts_and_chunks_of_any_length_make_the_same_run(run: Path, lived: Live
     assert_rebuilt(run)
 
 
+@pytest.mark.slow
 def test_a_habitat_on_the_host_lives_the_same_lives(lived: Lived) -> None:
     islands = [
         {**island, "habitat": {"name": "tests.toys:Mirror", "inner": inner}}
@@ -127,9 +128,10 @@ def test_islands_have_rates_of_their_own(lived: Lived) -> None:
 
 def test_equal_islands_are_a_plain_world() -> None:
     """To the last bit, on a ring: only the borders are drawn."""
-    plain = Lived(config(MILL), 200)
+    mills = {**MILL, "brain": {"hidden": 4}, "seeds": 2}
+    plain = Lived(config(mills), 200)
     islands = [{"name": "a"}, {"name": "b", "share": 3}, {"name": "c"}]
-    drawn = Lived(config({**MILL, "habitat": {**MILL["habitat"], "islands": islands}}), 200)
+    drawn = Lived(config({**mills, "habitat": {**MILL["habitat"], "islands": islands}}), 200)
     for name in ("births", "deaths"):
         mine, other = plain.table(name), drawn.table(name)
         for column, values in mine.items():

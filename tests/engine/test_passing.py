@@ -96,6 +96,7 @@ def test_a_founder_begins_with_nothing(run: Path) -> None:
     assert not life(opened, founders[-1]).memory.any()
 
 
+@pytest.mark.slow
 def test_without_heredity_children_begin_with_nothing() -> None:
     lonely = Lived(config(LEARNING, inheritance="founder", habitat=MEADOW["habitat"]), 50)
     arrays = lonely.engine.arrays()
@@ -119,6 +120,7 @@ def test_descendants_of_those_alive_at_a_fork_live_again(run: Path, tmp_path: Pa
         assert relive(opened, int(lives.id[row]), int(lives.world[row])).agrees
 
 
+@pytest.mark.slow
 def test_descendants_on_the_host_live_again_as_recorded(tmp_path: Path) -> None:
     loop.start(config(LEARNING, stop={"ticks": 60}), tmp_path / "host")
     opened = Archive(tmp_path / "host")

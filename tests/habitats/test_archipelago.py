@@ -21,7 +21,7 @@ from primordia.runs.digest import digests
 from primordia.runs.fork import _form
 from primordia.settings.islands import Islands
 from tests.habitats.test_parameters import HeldPoles
-from tests.toys import Clocked, Mirror
+from tests.toys import Clocked, Mill, Mirror, Watch
 from tests.worlds import MEADOW, config, law_of
 
 SHORE = Islands(("west", "east"), (0, 2, 5))
@@ -88,6 +88,33 @@ def test_parts_are_selected_checked_split_and_joined_island_by_island() -> None:
     np.testing.assert_array_equal(chosen, expected)
     assert np.flatnonzero(not_finite(new)).tolist() == [8]
     assert not_finite(old).tolist() == [False] * 10
+
+
+def test_bodies_on_islands_on_the_host_are_those_in_jax() -> None:
+    """In two worlds: also after a birth in some cells, and after they are saved and loaded."""
+    in_jax: Any = archipelago([Mill(), Watch()], SHORE)
+    held: Any = archipelago([Mirror("mill"), Mirror("watch")], SHORE)
+    rng, cells = np.random.default_rng(6), np.arange(10)
+    words = rng.integers(0, 2**32, (10, in_jax.words), np.uint32)
+    held.open(10)
+    held.reset(cells, words[::-1])
+    born = np.array([8, 1, 5, 0])
+    senses = held.reset(born, words[born])
+    np.testing.assert_array_equal(senses, np.asarray(in_jax.sense(in_jax.reset(words)))[born])
+    held.reset(cells, words)
+    bodies, step = in_jax.reset(words), shared(type(in_jax).step, in_jax)
+    for tick in range(4):
+        action = rng.normal(size=(10, in_jax.action.size)).astype(np.float32)
+        bodies, expected = step(bodies, action)
+        senses, outcome = held.step(action, np.ones(10, bool))
+        np.testing.assert_array_equal(senses, np.asarray(in_jax.sense(bodies)))
+        for name in ("fatal", "food", "effort"):
+            np.testing.assert_array_equal(getattr(outcome, name), getattr(expected, name))
+        if tick == 1:
+            saved = {name: each.copy() for name, each in held.save().items()}
+            held.reset(cells, words)
+            held.load(saved)
+    assert len(np.unique(senses[:, 0])) > 5
 
 
 def test_counts_of_islands_have_columns_of_their_own() -> None:

@@ -37,7 +37,7 @@ def mill(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def poles(tmp_path_factory: pytest.TempPathFactory) -> primordia.Run:
     """Make a run of a task whose lives can be drawn."""
     run = tmp_path_factory.mktemp("poles") / "run"
-    return primordia.run("CartPole-survival", run, cells=16, stop={"ticks": 100})
+    return primordia.run("CartPole-survival", run, cells=8, stop={"ticks": 100})
 
 
 @pytest.fixture
