@@ -9,6 +9,7 @@ import pytest
 import primordia
 from primordia.assays.ablate import _losses
 from primordia.assays.subjects import of_run
+from primordia.figures import portraits, spacetime
 from primordia.figures.traits import draw
 from primordia.habitats.archipelago import joined
 from primordia.history import traits as history
@@ -191,3 +192,37 @@ def test_traits_over_births_stand_beside_their_neutral_shadows(
     figure = draw(opened, 0)
     assert figure is not None
     assert [axes.get_title() for axes in figure.axes] == ["pole", "gravity"]
+
+
+def test_portraits_show_ancestors_with_their_own_bodies(run: Path) -> None:
+    opened, loaded = Archive(run), primordia.load(run)
+    organism = int(opened.lives.of_world(1).id[opened.lives.of_world(1).rank.argmax()])
+    found = loaded.ancestors(organism, 1)
+    figure = portraits.draw(opened, found)
+    assert figure is not None
+    assert found.traits is not None
+    shown = [axes for axes in figure.axes if axes.images]
+    assert 2 < len(shown) <= portraits.COUNT
+    for axes, place in ((shown[0], 0), (shown[-1], -1)):
+        pole = found.traits["pole"][place]
+        assert axes.get_title(loc="left").startswith(f"organism {found.line.id[place]:,}, tick")
+        assert f"pole x {pole:.3g}" in axes.get_title(loc="left")
+    pictures = {np.asarray(axes.images[0].get_array()).tobytes() for axes in shown}
+    assert len(pictures) == len(shown)
+
+
+def test_cells_of_the_space_time_picture_have_the_colours_of_traits(run: Path) -> None:
+    opened, traits = Archive(run), config(POLES).traits
+    assert traits is not None
+    figure = spacetime.draw(opened, 1)
+    lives = opened.lives.of_world(1)
+    panels = [axes for axes in figure.axes if axes.get_title() in traits.names]
+    assert [axes.get_title() for axes in panels] == ["pole", "gravity"]
+    last = np.asarray(panels[0].images[0].get_array())[-1]
+    rows = np.flatnonzero((opened.lives.world == 1) & (opened.lives.born == lives.born.max()))
+    cells = opened.lives.cell[rows]
+    np.testing.assert_allclose(last[cells], factors_of(opened, traits, rows)[:, 0], rtol=1e-6)
+    then = lives.born.max()
+    empty = np.setdiff1d(range(24), lives.cell[~lives.died | (lives.ended > then)])
+    assert np.isnan(last[empty]).all()
+    assert np.isnan(np.asarray(panels[1].images[0].get_array())).any()

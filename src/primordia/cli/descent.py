@@ -39,19 +39,22 @@ def ancestors(
     """Show the ancestors of the organism with birth number ID, and how far each one's descendants spread.
 
     Without ID the organism is the champion: the longest-lived of the later half of the births. The
-    table shows some of the ancestors; --json shows all of them.
+    table shows some of the ancestors; --json shows all of them. If bodies are inherited, --out also draws
+    portraits of some ancestors.
     """
     from primordia.api import load
 
-    found = load(run, trust).ancestors(organism, world, report)
+    loaded = load(run, trust)
+    found = loaded.ancestors(organism, world, report)
     if as_json:
         click.echo(json.dumps(found.to_dict()))
     else:
         _show_ancestors(run, found)
     if out is not None:
-        from primordia.figures import descent
+        from primordia.figures import descent, portraits
 
         save_figure(partial(descent.draw, found), out, "ancestors", as_json)
+        save_figure(partial(portraits.draw, loaded.opened(), found), out, "portraits", as_json)
 
 
 @click.command(short_help="Measure lines of descent: selection and drift, sweeps, diversity.")

@@ -1,13 +1,16 @@
 """The lines of descent of one world in space and time: cells across, births downwards."""
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import to_rgb
+from matplotlib.colors import LogNorm, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter
 
 from primordia.config import Config
 from primordia.figures import style
+from primordia.history.traits import factors_of
 from primordia.phylogeny.clades import Clades, clades_of, crowd_size
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
@@ -32,29 +35,54 @@ NAMES = 8
 """Points above the picture for the names of islands."""
 MAX_TAKEOVERS = 8
 """Largest number of takeovers with a mark."""
+TRAITS, MOMENTS = 3, 200
+"""Largest numbers of traits that are drawn, and of moments; each organism's genome is made again."""
 
 
 def draw(run: Records, world: int) -> Figure:
     """Draw one world. The unit of time is births, since little happens in most ticks of a
-    long-lived world."""
-    figure = Figure(figsize=(style.COLUMN, 4.8))
-    axes = figure.subplots()
+    long-lived world. If bodies are inherited, the same cells are drawn in the colours of traits."""
     here, config = run.lives.of_world(world), run.config
+    names = config.traits.names[:TRAITS] if config.traits else ()
+    figure = Figure(figsize=(style.COLUMN * (1 + len(names)), 4.8))
+    axes, *others = figure.subplots(1, 1 + len(names), squeeze=False)[0]
     births = np.unique(np.linspace(0, len(here) - 1, ROWS).astype(np.int64))
     cells = np.arange(0, config.cells, -(-config.cells // COLUMNS))
-    clades = clades_of(here)
-    axes.imshow(
-        picture(here, clades, cells, here.born[births]),
-        aspect="auto",
-        interpolation="nearest",
-        extent=(-0.5, config.cells - 0.5, len(here) + 0.5, 0.5),
-    )
+    clades, ticks = clades_of(here), here.born[births]
+    extent = (-0.5, config.cells - 0.5, len(here) + 0.5, 0.5)
+    shown: dict[str, Any] = {"aspect": "auto", "interpolation": "nearest", "extent": extent}
+    axes.imshow(picture(here, clades, cells, ticks), **shown)
     _label(axes, config, world, len(cells))
     if config.islands.count > 1:
         _mark_islands(axes, config.islands)
     _time_axis(axes, here)
     _mark_renewals(axes, here, clades)
+    if names:
+        factors = _factors(run, world, occupants(here, cells, ticks[:: -(-len(ticks) // MOMENTS)]))
+        for panel, name, values in zip(others, names, factors, strict=False):
+            colours = panel.imshow(values, cmap="viridis", norm=LogNorm(), **shown)
+            style.title(panel, name, {"factor of the habitat's own body": style.SOFT})
+            bar = figure.colorbar(colours, ax=panel, format="%.3g")
+            least, most = colours.get_clim()
+            bar.set_ticks(np.geomspace(least, most, 5).tolist())
+            bar.minorticks_off()
+            panel.set_axis_off()
     return figure
+
+
+def _factors(run: Records, world: int, rows: np.ndarray) -> np.ndarray:
+    """Return the traits of the organisms in a picture, float64 (traits, T, N); NaN in empty cells.
+
+    `rows` are rows of the world's lives, or EMPTY: int64 (T, N).
+    """
+    traits = run.config.traits
+    assert traits is not None
+    there = rows != EMPTY
+    which, place = np.unique(rows[there], return_inverse=True)
+    first = int(np.searchsorted(run.lives.world, world))
+    found = np.full((len(traits.names), *rows.shape), np.nan)
+    found[:, there] = factors_of(run, traits, first + which).T[:, place]
+    return found
 
 
 def occupants(lives: Lives, cells: np.ndarray, ticks: np.ndarray) -> np.ndarray:

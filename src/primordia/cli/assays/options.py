@@ -143,11 +143,15 @@ def tell(
             save_figure(partial(draw, of), folder, name, as_json)
 
 
-def save_figure(draw: "Callable[[], Figure]", folder: Path, name: str, as_json: bool) -> None:
+def save_figure(
+    draw: "Callable[[], Figure | None]", folder: Path, name: str, as_json: bool
+) -> None:
     """Draw a figure into a folder, and print the names of its files, after JSON on stderr."""
     from primordia.figures import style
 
     files.make_folder(folder)
     with style.applied():
-        pictures = style.save(draw(), folder / name)
+        if (figure := draw()) is None:
+            return
+        pictures = style.save(figure, folder / name)
     click.echo(f"Figure: {' and '.join(map(str, pictures))}", err=as_json)
