@@ -7,14 +7,14 @@ from pathlib import Path
 
 import jax
 import jax.numpy as jnp
-import numpy as np
 
 from primordia.errors import InputError
 from primordia.habitats.bodies import placeholder_bodies
 from primordia.habitats.contract import AnyHabitat
 from primordia.law.events import empty
-from primordia.law.genesis import begin
+from primordia.law.genesis import empty_worlds
 from primordia.law.law import Law
+from primordia.random.wide import zero
 
 MEMINFO, CGROUP = Path("/proc/meminfo"), Path("/sys/fs/cgroup/memory.max")
 """The file in which Linux shows the available memory, and the file with a container's memory limit."""
@@ -42,7 +42,8 @@ def bytes_needed(law: Law, habitat: AnyHabitat, devices: int = 1) -> int:
             bodies = placeholder_bodies(habitat, cells)
         else:
             bodies = jnp.zeros((cells, habitat.senses_size), jnp.float32)
-        return begin(law, np.zeros(law.worlds, np.uint64)), bodies, empty(law)
+        seeds = zero((law.worlds,))
+        return empty_worlds(law, seeds, jnp), bodies, empty(law)
 
     leaves = jax.tree.leaves(jax.eval_shape(arrays))
     return devices * sum(leaf.size * leaf.dtype.itemsize for leaf in leaves)

@@ -21,13 +21,13 @@ from primordia.compiled import shared
 from primordia.engine.fused import FusedChunks, advance
 from primordia.engine.state import Limits, State, filled
 from primordia.habitats.bodies import placeholder_bodies
-from primordia.habitats.contract import JaxHabitat
+from primordia.habitats.contract import Bodies, JaxHabitat
 from primordia.law import events as log
 from primordia.law.columns import Columns
 from primordia.law.events import BIRTHS, DEATHS, Events, Rows, sample_columns
-from primordia.law.genesis import beginning, empty_worlds
+from primordia.law.genesis import empty_worlds
 from primordia.law.law import Law
-from primordia.random.wide import Wide, wide
+from primordia.random.wide import wide
 from primordia.rounding import rounded
 
 AXIS = "devices"
@@ -52,7 +52,8 @@ class ShardedChunks(FusedChunks):
 
     def begin(self, seeds: np.ndarray) -> State:
         """Return the state of a run before genesis; no device holds more than its share."""
-        return shared(_begin, self._split.mesh, self._share, self._habitat)(wide(seeds))
+        world = jax.device_put(empty_worlds(self._law, wide(seeds)), self._split)
+        return State(world, shared(_bodies, self._split.mesh, self._share, self._habitat)())
 
     def advance(self, state: State, limits: Limits, ticks: int) -> tuple[State, int]:
         """Advance by at most `ticks`, fewer if every world stops or the lists are full.
@@ -107,12 +108,8 @@ def _on_each(mesh: Mesh, function: Callable, *given: PartitionSpec | tuple) -> C
     return jax.shard_map(function, mesh=mesh, in_specs=given, out_specs=SPLIT, check_vma=False)
 
 
-def _begin(mesh: Mesh, law: Law, habitat: JaxHabitat, seed: Wide) -> State:
-    def on_one(seed: Wide) -> State:
-        bodies = placeholder_bodies(habitat, law.worlds * law.cells)
-        return State(empty_worlds(law, seed, beginning(law)), bodies)
-
-    return _on_each(mesh, on_one, SPLIT)(seed)
+def _bodies(mesh: Mesh, law: Law, habitat: JaxHabitat) -> Bodies:
+    return _on_each(mesh, lambda: placeholder_bodies(habitat, law.worlds * law.cells))()
 
 
 def _empty(mesh: Mesh, law: Law) -> Events:

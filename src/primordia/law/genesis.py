@@ -1,65 +1,71 @@
 """Genesis: worlds before the first organism, and the random words of newborn bodies."""
 
+from typing import Any
+
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array, lax
 
 from primordia.brains.contract import Genome
 from primordia.brains.layout import BODY
-from primordia.compiled import shared
 from primordia.law import moments
 from primordia.law.act import Acts
 from primordia.law.law import Law
 from primordia.law.seasons import ratchets
-from primordia.law.world import Cause, Climate, Looks, Organisms, World, Worlds
+from primordia.law.world import Cause, Looks, Organisms, World, Worlds
 from primordia.random.keys import Purpose, bits, stream
-from primordia.random.wide import Wide, never, wide, zero
+from primordia.random.wide import Wide, wide
 
 
 def begin(law: Law, seeds: np.ndarray) -> World:
     """Return worlds of these seeds, uint64 (W,), without organisms. `settle` adds founders before
     the first tick."""
-    return shared(empty_worlds, law.compiled)(wide(seeds), beginning(law))
+    return jax.tree.map(jnp.array, empty_worlds(law, wide(seeds)))
 
 
-def empty_worlds(law: Law, seed: Wide, rates: Array | np.ndarray) -> World:
-    """Make the worlds for `begin`; `rates` is `beginning(law)`.
+def empty_worlds(law: Law, seed: Wide, library: Any = np) -> World:
+    """Return the worlds of `begin` as arrays of a library.
 
-    Callers compile this function, which cuts its time to a third.
+    It is NumPy, since JAX would compile code for each shape, or JAX's NumPy where only shapes matter.
     """
     count, cells, mutation = len(seed.lo), law.worlds * law.cells, law.heredity.mutation
     worlds = Worlds(
         seed=seed,
-        tick=zero((count,)),
-        births=zero((count,)),
-        deaths=zero((count, len(Cause))),
-        extinctions=zero((count,)),
-        organism_ticks=zero((count,)),
-        food=zero((count,)),
-        calm=jnp.zeros(count, jnp.int32),
-        sample_wait=jnp.full(count, law.sample_every, jnp.int32),
-        saturated=never((count,)),
-        saturated_births=never((count,)),
-        fixed=never((count,)),
-        fixed_births=never((count,)),
-        climate=_climate(law, count, rates),
-        looks=initial_looks(law, count, 0),
-        acts=None if law.act is None else Acts(*(zero((count,)) for _ in Acts._fields)),
+        tick=_zero(library, (count,)),
+        births=_zero(library, (count,)),
+        deaths=_zero(library, (count, len(Cause))),
+        extinctions=_zero(library, (count,)),
+        organism_ticks=_zero(library, (count,)),
+        food=_zero(library, (count,)),
+        calm=library.zeros(count, np.int32),
+        sample_wait=library.full(count, law.sample_every, np.int32),
+        saturated=_never(library, (count,)),
+        saturated_births=_never(library, (count,)),
+        fixed=_never(library, (count,)),
+        fixed_births=_never(library, (count,)),
+        climate=initial_climate(law, count, library),
+        looks=initial_looks(law, count, 0, library),
+        acts=None if law.act is None else Acts(*(_zero(library, (count,)) for _ in Acts._fields)),
     )
     genome = {
-        name: jnp.zeros((cells, *shape), jnp.float32) for name, shape in law.heredity.layout.blocks
+        name: library.zeros((cells, *shape), np.float32)
+        for name, shape in law.heredity.layout.blocks
     }
+    notes = library.zeros((cells, 0), np.int32)
+    if mutation.notes:
+        notes = jnp.broadcast_to(mutation.founders_notes(1), (cells, len(mutation.notes)))
     organisms = Organisms(
-        alive=jnp.zeros(cells, bool),
+        alive=library.zeros(cells, bool),
         genome=genome,
-        notes=jnp.broadcast_to(mutation.founders_notes(1), (cells, len(mutation.notes))),
-        memory=jnp.zeros((cells, law.memory), jnp.float32),
-        energy=jnp.zeros(cells, jnp.int32),
-        eaten=jnp.zeros(cells, jnp.int32),
-        born=zero((cells,)),
-        number=zero((cells,)),
-        branch=zero((cells,)),
-        moments=moments.none(cells, mutation.moments, law.senses, law.memory),
+        notes=notes,
+        memory=library.zeros((cells, law.memory), np.float32),
+        energy=library.zeros(cells, np.int32),
+        eaten=library.zeros(cells, np.int32),
+        born=_zero(library, (cells,)),
+        number=_zero(library, (cells,)),
+        branch=_zero(library, (cells,)),
+        moments=moments.none(cells, mutation.moments, law.senses, law.memory, library),
     )
     return World(organisms, worlds)
 
@@ -102,23 +108,24 @@ def body_words(key: Wide, cells: Array, words: int) -> Array:
     return jnp.concatenate(pairs, axis=0)[:words].T
 
 
-def initial_climate(law: Law, count: int) -> Climate:
+def initial_climate(law: Law, count: int, library: Any = np) -> dict[str, Any]:
     """Return the first values of the settings that seasons may change, in `count` worlds."""
-    return _climate(law, count, beginning(law))
+    return {name: library.full(count, value, np.float32) for name, value in law.beginning}
 
 
-def beginning(law: Law) -> np.ndarray:
-    """Return the first values of `law.rates`, float32 (R,)."""
-    return np.array([value for _, value in law.beginning], np.float32)
-
-
-def _climate(law: Law, count: int, rates: Array | np.ndarray) -> Climate:
-    return {name: jnp.full(count, value) for name, value in zip(law.rates, rates, strict=True)}
-
-
-def initial_looks(law: Law, count: int, tick: int) -> Looks:
+def initial_looks(law: Law, count: int, tick: int, library: Any = np) -> Looks:
     """Return the state of ratchets before their first measurement, in `count` worlds at a tick."""
     periods = [ratchet.every for ratchet in ratchets(law.seasons)]
     wait = np.array([period - tick % period for period in periods], np.int32)
     shape = count, len(periods)
-    return Looks(jnp.asarray(np.tile(wait, (count, 1))), zero(shape), zero(shape))
+    return Looks(library.tile(wait, (count, 1)), _zero(library, shape), _zero(library, shape))
+
+
+def _zero(library: Any, shape: tuple[int, ...]) -> Wide:
+    words = library.zeros(shape, np.uint32)
+    return Wide(words, words)
+
+
+def _never(library: Any, shape: tuple[int, ...]) -> Wide:
+    words = library.full(shape, np.uint32(2**32 - 1), np.uint32)
+    return Wide(words, words)

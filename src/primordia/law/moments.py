@@ -7,6 +7,7 @@ moment is stored, so chunks, interruptions and other worlds change nothing.
 
 import operator
 from functools import reduce
+from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
@@ -20,14 +21,17 @@ from primordia.mutations.contract import Change, Moments
 from primordia.random.wide import modulo
 
 
-def none(cells: int, rule: Moments | None, senses: int, memory: int) -> Remembered | None:
-    """Return memories without moments, for empty cells; None if organisms remember no moments."""
+def none(
+    cells: int, rule: Moments | None, senses: int, memory: int, library: Any
+) -> Remembered | None:
+    """Return memories without moments, for empty cells, as arrays of a library; None if organisms
+    remember no moments."""
     if rule is None:
         return None
     return Remembered(
-        senses=jnp.zeros((cells, rule.kept, senses), jnp.float32),
-        memory=jnp.zeros((cells, rule.kept, memory), jnp.float32),
-        known=jnp.zeros((cells, rule.kept), bool),
+        senses=library.zeros((cells, rule.kept, senses), np.float32),
+        memory=library.zeros((cells, rule.kept, memory), np.float32),
+        known=library.zeros((cells, rule.kept), bool),
     )
 
 

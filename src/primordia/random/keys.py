@@ -58,8 +58,16 @@ def encrypt(key: Wide, counter: Wide) -> Wide:
     return Wide(a, b)
 
 
-threefry = jax.jit(encrypt)
-"""`encrypt`, compiled."""
+_compiled = jax.jit(encrypt)
+
+
+def threefry(key: Wide, counter: Wide) -> Wide:
+    """Return `encrypt`, by NumPy outside of compiled code, where JAX would compile it for each shape."""
+    if any(isinstance(word, jax.core.Tracer) for word in (*key, *counter)):
+        return _compiled(key, counter)
+    host: Any = np.asarray
+    with np.errstate(over="ignore"):  # NumPy warns of single numbers that wrap, and not of arrays
+        return encrypt(key.map(host), counter.map(host)).map(jnp.asarray)
 
 
 @register_dataclass
