@@ -21,7 +21,7 @@ from tests.commands import begin, complains, here
 from tests.trouble import flip, newest
 from tests.worlds import MILL, config
 
-TICKS, FEW = 90_000, 3_000
+TICKS, FEW = 45_000, 3_000
 """Ticks of runs that are disturbed while they live, and of others."""
 SLOWLY = ("--checkpoint-every", "0.05")
 
@@ -113,7 +113,7 @@ def killed(mill: Path, run: Path, rng: random.Random) -> int:
         known = [path.name for path in run.glob("checkpoints/0*")]
         if known and int(max(known)) >= wanted:
             break
-        time.sleep(0.001)
+        time.sleep(0.01)
     time.sleep(rng.uniform(0.0, 0.02))
     process.send_signal(signal.SIGSTOP)
     try:
