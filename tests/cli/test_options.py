@@ -68,11 +68,11 @@ CALLS: dict[tuple[Any, ...], Any] = {
     ("report", RUN, "--out", OUT): call.report(OUT),
     ("watch", RUN, "--port", 0): call.watch(0, ANY),
     ("phylogeny", RUN, 5, "--out", OUT, "--world", 2, "--extant"):
-        call.phylogeny(5, out=OUT, say=report, world=2, extant=True, collapse=False),
+        call.phylogeny(5, out=OUT, say=report, world=2, extant=True, collapse=False, traits=False),
     ("phylogeny", RUN, 0, "--out", OUT, "--world", 0):
-        call.phylogeny(0, out=OUT, say=report, world=0, extant=False, collapse=False),
-    ("phylogeny", RUN, "--out", OUT, "--collapse"):
-        call.phylogeny(None, out=OUT, say=report, world=None, extant=False, collapse=True),
+        call.phylogeny(0, out=OUT, say=report, world=0, extant=False, collapse=False, traits=False),
+    ("phylogeny", RUN, "--out", OUT, "--collapse", "--traits"):
+        call.phylogeny(None, out=OUT, say=report, world=None, extant=False, collapse=True, traits=True),
     ("ancestors", RUN, 5, "--world", 2, "--json"): call.ancestors(5, 2, report),
     ("ancestors", RUN, 0, "--world", 0, "--json"): call.ancestors(0, 0, report),
     ("ancestors", RUN, "--world", 0, "--json"): call.ancestors(None, 0, report),

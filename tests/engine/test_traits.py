@@ -226,3 +226,27 @@ def test_cells_of_the_space_time_picture_have_the_colours_of_traits(run: Path) -
     empty = np.setdiff1d(range(24), lives.cell[~lives.died | (lives.ended > then)])
     assert np.isnan(last[empty]).all()
     assert np.isnan(np.asarray(panels[1].images[0].get_array())).any()
+
+
+def test_a_phylogeny_has_traits_if_they_are_asked_for(run: Path, tmp_path: Path) -> None:
+    """Those that lived before a fork have theirs from the run that was forked."""
+    opened, traits = Archive(run), config(POLES).traits
+    assert traits is not None
+    whole = primordia.load(run).phylogeny(traits=True)
+    assert whole is not None
+    factors = factors_of(opened, traits, np.arange(len(opened.lives)))
+    for number, name in enumerate(traits.names):
+        np.testing.assert_allclose(whole[f"trait.{name}"].to_numpy(), factors[:, number], rtol=1e-6)
+    fork = primordia.load(run).fork(150, tmp_path / "fork", stop={"ticks": TICKS})
+    again = fork.phylogeny(traits=True, world=1, extant=True)
+    expected = primordia.load(run).phylogeny(traits=True, world=1, extant=True)
+    assert again is not None
+    assert again.equals(expected)
+    assert again["trait.pole"].null_count == 0
+    usual = primordia.load(run).phylogeny()
+    assert usual is not None
+    assert not [name for name in usual.column_names if name.startswith("trait.")]
+    assert primordia.load(run).phylogeny(traits=True, out=tmp_path / "tree.tsv") is None
+    head, *rows = (tmp_path / "tree.tsv").read_text().splitlines()
+    assert "trait.gravity" in head.split("\t")
+    assert len(rows) >= len(opened.lives)

@@ -313,6 +313,7 @@ def test_bad_input_is_one_line(family: Path, tmp_path: Path) -> None:
     )
     complains(here("phylogeny", run, 3, "--world", 9, "--out", out), 2, "the worlds are 0 to 1")
     complains(here("phylogeny", run, 3, "--extant", "--out", out), 2, "give one")
+    complains(here("phylogeny", run, "--traits", "--out", out), 2, "bodies are not inherited")
     complains(here("phylogeny", run, "--out", tmp_path / "a.xls"), 2, ".parquet, .csv, .nwk")
     complains(here("phylogeny", run), 2, "--out")
     complains(here("phylogeny", tmp_path / "none", "--out", out), 2, "none")

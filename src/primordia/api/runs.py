@@ -31,6 +31,7 @@ from primordia.phylogeny.forks import whole_past
 from primordia.phylogeny.lines import WorldLines, lines
 from primordia.phylogeny.reduce import chosen
 from primordia.phylogeny.table import table
+from primordia.phylogeny.traits import with_traits
 from primordia.printable import printable
 from primordia.runs import bundle, directory, loop, opening
 from primordia.runs.archive import Archive
@@ -205,6 +206,7 @@ class Run:
         organism: int | None = None,
         *,
         out: str | Path | None = None,
+        traits: bool = False,
         say: Callable[[str], object] = warnings.warn,
         **choice: Any,
     ) -> pa.Table | None:
@@ -212,11 +214,14 @@ class Run:
 
         `say` is called with a message about anything that is missing. `world`, `extant` and
         `collapse` are those of `reduce.chosen`. With `organism`, a birth number, the table is that
-        organism's line of descent.
+        organism's line of descent. With `traits`, it has the traits of bodies.
         """
         if out is not None:
             formats.check_suffix(Path(out))
-        part = chosen(whole_past(self.only(), say).whole, organism, **choice)
+        past = whole_past(self.only(), say)
+        part = chosen(past.whole, organism, **choice)
+        if traits:
+            part = with_traits(part, past.runs)
         if out is None:
             return table(part)
         formats.save(part, Path(out), say)

@@ -5,7 +5,7 @@ from typing import Any
 
 import click
 
-from primordia.cli.flags import run_argument
+from primordia.cli.flags import run_argument, trust_option
 from primordia.cli.paths import OutputPath
 from primordia.cli.streams import report
 
@@ -25,7 +25,9 @@ from primordia.cli.streams import report
 @click.option(
     "--collapse", is_flag=True, help="Leave out the dead that have a parent and only one child."
 )
-def phylogeny(run: Path, organism: int | None, out: Path, **choice: Any) -> None:
+@click.option("--traits", is_flag=True, help="Add the traits of bodies; genomes are made again.")
+@trust_option
+def phylogeny(run: Path, organism: int | None, out: Path, trust: bool, **choice: Any) -> None:
     """Write the parent, the life and the death of each organism to a file for other programs.
 
     With ID, a birth number, only that organism and its ancestors are written. Organisms that lived before
@@ -36,5 +38,5 @@ def phylogeny(run: Path, organism: int | None, out: Path, **choice: Any) -> None
     """
     from primordia.api import load
 
-    load(run).phylogeny(organism, out=out, say=report, **choice)
+    load(run, trust).phylogeny(organism, out=out, say=report, **choice)
     click.echo(out)
