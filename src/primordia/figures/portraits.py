@@ -22,18 +22,19 @@ TRAITS = 3
 def draw(run: Records, found: Ancestors) -> Figure | None:
     """Draw some of the ancestors, evenly spaced, in the first ticks of their lives.
 
-    Return None if bodies are not inherited, or if the habitat draws no pictures.
+    Return None if bodies are not inherited, if none of them lived a tick, or if the habitat draws no
+    pictures.
 
     Raises:
         InputError: a life cannot be lived again or drawn; the message says why.
     """
-    if found.traits is None or run.habitat.lacks(Ability.PICTURE):
-        return None
     lived = np.flatnonzero(found.line.lifespan > 0)
+    if found.traits is None or not len(lived) or run.habitat.lacks(Ability.PICTURE):
+        return None
     places = lived[np.unique(np.linspace(0, len(lived) - 1, COUNT).astype(int))]
     columns = min(len(places), COLUMNS)
     rows = -(-len(places) // columns)
-    figure = Figure(figsize=(style.PAGE, (1.35 + 0.1 * len(found.traits)) * rows))
+    figure = Figure(figsize=(style.PAGE, (1.35 + 0.1 * min(len(found.traits), TRAITS)) * rows))
     panels = figure.subplots(rows, columns, squeeze=False).ravel()
     for axes in panels:
         axes.set_axis_off()

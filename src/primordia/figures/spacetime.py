@@ -60,13 +60,15 @@ def draw(run: Records, world: int) -> Figure:
     if names:
         factors = _factors(run, world, occupants(here, cells, ticks[:: -(-len(ticks) // MOMENTS)]))
         for panel, name, values in zip(others, names, factors, strict=False):
+            panel.set_axis_off()
+            if np.isnan(values).all():
+                continue
             colours = panel.imshow(values, cmap="viridis", norm=LogNorm(), **shown)
             style.title(panel, name, {"factor of the habitat's own body": style.SOFT})
             bar = figure.colorbar(colours, ax=panel, format="%.3g")
             least, most = colours.get_clim()
             bar.set_ticks(np.geomspace(least, most, 5).tolist())
             bar.minorticks_off()
-            panel.set_axis_off()
     return figure
 
 
