@@ -19,8 +19,10 @@ from primordia.history.traits import EACH, course, factors_of
 from primordia.organism.playing.games import lifespans
 from primordia.organism.playing.players import players_of
 from primordia.organism.reliving.compare import relive
+from primordia.phylogeny.table import ids
 from primordia.report.curves import panels
 from primordia.runs.archive import Archive
+from primordia.runs.lives import Lives
 from tests.engine.test_strange import digests, live_in_parts
 from tests.history.test_rebuilding import assert_rebuilt
 from tests.strange import TICKS
@@ -243,6 +245,15 @@ def test_a_phylogeny_has_traits_if_they_are_asked_for(run: Path, tmp_path: Path)
     assert again is not None
     assert again.equals(expected)
     assert again["trait.pole"].null_count == 0
+    other = primordia.load(run).fork(150, tmp_path / "other", seed=9, stop={"ticks": 250})
+    also = other.phylogeny(traits=True)
+    assert also is not None
+    lives = Archive(other.path).lives
+    rows = np.flatnonzero(~lives.inherited)
+    own = {pair: row for row, pair in zip(rows, _pairs(lives.take(rows)), strict=True)}
+    seen = dict(zip(also["id"].to_pylist(), also["trait.pole"].to_pylist(), strict=True))
+    found = factors_of(Archive(other.path), traits, np.array([*own.values()]))[:, 0]
+    np.testing.assert_allclose([seen[pair] for pair in own], found, rtol=1e-6)
     usual = primordia.load(run).phylogeny()
     assert usual is not None
     assert not [name for name in usual.column_names if name.startswith("trait.")]
@@ -250,3 +261,8 @@ def test_a_phylogeny_has_traits_if_they_are_asked_for(run: Path, tmp_path: Path)
     head, *rows = (tmp_path / "tree.tsv").read_text().splitlines()
     assert "trait.gravity" in head.split("\t")
     assert len(rows) >= len(opened.lives)
+
+
+def _pairs(lives: Lives) -> list[int]:
+    """Return the ids of organisms in a phylogeny."""
+    return [int(each) for each in ids(lives.world, lives.id)]
