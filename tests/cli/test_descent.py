@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from primordia.cli import descent
+from primordia.cli.assays.options import save_figure
 from primordia.phylogeny.coalescence import Times
 from primordia.phylogeny.descent import CommonAncestor
 from primordia.phylogeny.sweeps import Sweep
@@ -216,7 +217,7 @@ def test_only_a_sweep_past_half_of_the_living_is_under_way() -> None:
 @pytest.mark.parametrize(
     ("words", "figure", "names"),
     [
-        (("ancestors",), "descent", ["ancestors"]),
+        (("ancestors",), "descent", ["ancestors", "portraits"]),
         (("lineages", "--world", "all"), "lines", ["lines-3", "lines-12"]),
     ],
     ids=["ancestors", "lineages"],
@@ -239,6 +240,7 @@ def test_the_files_of_each_figure_are_printed_apart_from_json(
     with (
         patch("primordia.api.load", return_value=run),
         patch(f"primordia.figures.{figure}.draw"),
+        patch("primordia.figures.portraits.draw"),
         patch("primordia.figures.style.save", save),
         patch.object(descent, "_show_ancestors"),
         patch.object(descent, "_show_lines"),
@@ -251,6 +253,12 @@ def test_the_files_of_each_figure_are_printed_apart_from_json(
     assert (done.stderr if as_json else done.stdout).splitlines() == lines
     if as_json:
         json.loads(done.stdout)
+
+
+def test_a_figure_without_anything_to_draw_is_not_written(tmp_path: Path) -> None:
+    """There are no portraits where bodies are not inherited."""
+    with patch("primordia.figures.style.save", MagicMock(side_effect=AssertionError)):
+        save_figure(lambda: None, tmp_path, "portraits", as_json=False)
 
 
 def test_traits_are_columns_before_lives(shown: Shown) -> None:
