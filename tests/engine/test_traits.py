@@ -230,13 +230,16 @@ def test_cells_of_the_space_time_picture_have_the_colours_of_traits(run: Path) -
     assert np.isnan(np.asarray(panels[1].images[0].get_array())).any()
 
 
-def test_a_phylogeny_has_traits_if_they_are_asked_for(run: Path, tmp_path: Path) -> None:
+def test_a_phylogeny_has_traits_if_they_are_asked_for(
+    run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Those that lived before a fork have theirs from the run that was forked."""
     opened, traits = Archive(run), config(POLES).traits
     assert traits is not None
+    factors = factors_of(opened, traits, np.arange(len(opened.lives)))
+    monkeypatch.setattr(history, "AT_ONCE", 50)
     whole = primordia.load(run).phylogeny(traits=True)
     assert whole is not None
-    factors = factors_of(opened, traits, np.arange(len(opened.lives)))
     for number, name in enumerate(traits.names):
         np.testing.assert_allclose(whole[f"trait.{name}"].to_numpy(), factors[:, number], rtol=1e-6)
     fork = primordia.load(run).fork(150, tmp_path / "fork", stop={"ticks": TICKS})

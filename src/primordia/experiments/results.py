@@ -202,6 +202,7 @@ def world_rows(
         columns += [_cells(arm.measured[name]) for name in known]
         for world, row in enumerate(zip(*columns, strict=True)):
             last = ends[number][world].values() if ends else ()
+            # NaN differs from itself
             cells = ("" if cell == NEVER or cell != cell else cell for cell in (*row, *last))
             rows.writerow([arm.name, *cells])
     return text.getvalue()

@@ -13,8 +13,8 @@ def _passed_on(method: Method) -> Method:
     """Return a method that calls the inner habitat's method of the same name."""
 
     @wraps(method, updated=())  # without the mark of an abstract method
-    def call(self: "_Around", *given: Any) -> Any:
-        return getattr(self.inner, method.__name__)(*given)
+    def call(self: "_Around", *given: Any, **named: Any) -> Any:
+        return getattr(self.inner, method.__name__)(*given, **named)
 
     return call  # type: ignore[return-value]
 

@@ -10,6 +10,8 @@ from primordia.history import pedigree
 from primordia.history.series import spaced
 from primordia.runs.records import Records
 
+AT_ONCE = 2**17
+"""Largest number of genomes that are in memory at once."""
 BINS, EACH = 25, 12
 """Number of bins of births, and the largest number of organisms of a world in each."""
 
@@ -34,7 +36,12 @@ def factors_of(run: Records, traits: Traits, rows: np.ndarray, redrawn: bool = F
         rows: the organisms' rows in the run's lives, int64 (K,).
         redrawn: whether the neutral shadows are meant; see `pedigree.genomes`.
     """
-    return traits.factors(run.layout.split(pedigree.genomes(run, rows, redrawn))[BODY])
+    found = np.zeros((len(rows), len(traits.names)), np.float32)
+    for first in range(0, len(rows), AT_ONCE):
+        part = slice(first, first + AT_ONCE)
+        genomes = pedigree.genomes(run, rows[part], redrawn)
+        found[part] = traits.factors(run.layout.split(genomes)[BODY])
+    return found
 
 
 def of_living(run: Records, world: int) -> dict[str, dict[str, float]] | None:

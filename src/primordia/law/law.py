@@ -132,7 +132,7 @@ class Law:
         beginning = tuple((name, kept.get(self.islands.split(name)[1], 0.0)) for name in self.rates)
         return replace(self, beginning=beginning, metabolism=self.metabolism and Metabolism())
 
-    @property
+    @cached_property
     def alone(self) -> "Law":
         """Return the law of an organism without a world, which lives again or plays.
 
