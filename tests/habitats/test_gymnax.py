@@ -216,3 +216,18 @@ def test_it_is_known_whether_a_function_uses_its_first_argument() -> None:
 def test_ages_are_counted_only_where_a_tick_draws() -> None:
     assert (np.asarray(lived(walk(), 3)[0].age.lo) == 3).all()
     assert not np.asarray(lived(Gymnax(env="tests.walks:Played"), 3)[0].age.lo).any()
+
+
+def test_a_sticky_action_is_that_of_the_tick_before_with_its_probability() -> None:
+    habitat, ticks = Gymnax(env="tests.walks:Choice", sticky=0.25), 400
+    bodies, differs = habitat.reset(WORDS), np.zeros(4)
+    for tick in range(ticks):
+        before, held = state_of(habitat, bodies)["place"][:, 0] * 0.9, np.asarray(bodies.held)
+        chosen = jnp.full(4, 1 + tick % 2, jnp.int32)
+        bodies, _ = habitat.step(bodies, chosen)
+        made = np.round((state_of(habitat, bodies)["place"][:, 0] - before) / 0.5).astype(int)
+        assert ((made == chosen) | (made == held)).all()
+        differs += made != chosen
+    # An action that alternates differs from the one made in a fifth of the ticks.
+    np.testing.assert_allclose(differs / ticks, 0.2, atol=0.06)
+    assert len(np.unique(differs)) > 1

@@ -15,7 +15,7 @@ from primordia.mutations.calibrated import Calibrated
 from primordia.mutations.contract import Draws, Family
 from primordia.mutations.gaussian import Block, Gaussian
 from primordia.mutations.noise import noise_index
-from primordia.random.gaussian import quantiles
+from primordia.random.gaussian import quantiles, sparse
 from primordia.random.keys import Purpose, Streams, bits, chance, stream, streams
 from primordia.random.wide import Wide, wide
 from tests.chance import binomial
@@ -121,12 +121,17 @@ def rates(layout: Layout, probability: object, scale: object, count: int) -> dic
 
 
 def children(
-    layout: Layout, parents: np.ndarray, probability: object, scale: object = 1.0
+    layout: Layout,
+    parents: np.ndarray,
+    probability: object,
+    scale: object = 1.0,
+    density: float = 1.0,
 ) -> tuple[np.ndarray, np.ndarray]:
     count = len(parents)
     draws = Draws(drawn(count=count), np.arange(count, dtype=np.int32))
     notes, table = np.zeros((count, 0), np.int32), rates(layout, probability, scale, count)
-    return inherited(Gaussian(), layout, Family(parents, notes, table, draws))
+    mutation = Gaussian(density=density)
+    return inherited(mutation, layout, Family(parents, notes, table, draws))
 
 
 @pytest.mark.parametrize("probability", [0.0, 0.1, 0.5, 0.999, 1.0])
@@ -213,6 +218,21 @@ def test_children_are_those_of_numpy_bit_for_bit(
     genomes, mutated = children(LAYOUT, parents, probability, scales)
     same_bits(genomes, expected)
     np.testing.assert_array_equal(mutated, takes.any(axis=1))
+
+
+@pytest.mark.parametrize("density", [0.5, 0.01, 2**-15])
+def test_a_sparse_mutation_changes_a_share_of_the_weights_by_gaussian_noise(density: float) -> None:
+    table, full = sparse(density), quantiles()
+    changed = table[table != 0]
+    assert len(changed) == pytest.approx(density * 65536, abs=1)
+    assert np.isin(changed, full).all()
+    np.testing.assert_array_equal(table, -table[::-1])
+    if density > 0.001:
+        assert changed.std() == pytest.approx(1, abs=0.01)
+    genomes, mutated = children(LAYOUT, np.ones((K, P), np.float32), 1.0, 0.5, density)
+    place = index(drawn()[Purpose.NOISE], np.arange(K), P)
+    same_bits(genomes, 1 + table[place] * np.float32(0.5))
+    assert mutated.all()
 
 
 def test_founders_are_noise_of_their_blocks_scales() -> None:

@@ -36,6 +36,9 @@ class Gaussian(Mutation):
 
     probability: Rate = Field(0.5, ge=0, le=1, description="chance that a child is mutated")
     scale: Rate = Field(0.01, ge=0, description="standard deviation of the noise on each weight")
+    density: float = Field(
+        1.0, ge=2**-15, le=1, description="share of the weights that a mutation changes"
+    )
     founder_scale: float = Field(
         0.01, ge=0, description="standard deviation of a founder's weights around zero"
     )
@@ -74,7 +77,8 @@ class Gaussian(Mutation):
     def inherit(self, layout: Layout, family: Family) -> tuple[Array, Array]:
         """Add noise to the blocks that mutate; see `Mutation.inherit`."""
         parents, draws, mutates = family.parents, family.draws, self.mutating(layout, family)
-        noise = standard_noise(draws.streams[Purpose.NOISE], draws.cell, layout.length)
+        stream, length = draws.streams[Purpose.NOISE], layout.length
+        noise = standard_noise(stream, draws.cell, length, self.density)
         noise = noise * layout.per_weight(self.noise_scale(layout, family))
         children = jnp.where(layout.per_weight(mutates), parents + noise, parents)
         return children, mutates.any(axis=1)

@@ -8,14 +8,17 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from primordia.random.gaussian import quantiles
+from primordia.random.gaussian import sparse
 from primordia.random.keys import bits
 from primordia.random.wide import Wide
 
 
-def standard_noise(stream: Wide, cell: Array, length: int) -> Array:
-    """Return standard Gaussian noise for K streams and cells (K,): float32 (K, length)."""
-    return jnp.asarray(quantiles())[noise_index(stream, cell, length)]
+def standard_noise(stream: Wide, cell: Array, length: int, share: float = 1.0) -> Array:
+    """Return standard Gaussian noise for K streams and cells (K,): float32 (K, length).
+
+    Each number is 0 with probability `1 - share`.
+    """
+    return jnp.asarray(sparse(share))[noise_index(stream, cell, length)]
 
 
 def noise_index(stream: Wide, cell: Array, length: int) -> Array:

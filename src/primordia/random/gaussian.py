@@ -29,3 +29,17 @@ def quantiles() -> np.ndarray:
             " from those of other machines; use another Python or C library"
         )
     return table
+
+
+@cache
+def sparse(share: float) -> np.ndarray:
+    """Return a table like `quantiles`, of which only this share (2^-15 to 1) differs from zero.
+
+    These entries, at both ends of the table, are quantiles of the standard Gaussian, evenly chosen.
+    """
+    half = len(quantiles()) // 2
+    count, upper = round(share * half), quantiles()[half:]
+    table = np.zeros_like(quantiles())
+    chosen = upper[(2 * np.arange(count) + 1) * half // (2 * count)]
+    table[:count], table[-count:] = -chosen[::-1], chosen
+    return table

@@ -36,12 +36,14 @@ if TYPE_CHECKING:
 class Body(NamedTuple):
     """Bodies: the environment's states, their senses, the words of their births, and their ages.
 
-    Ages stay zero if the environment draws no random numbers after a birth.
+    Ages stay zero if a tick draws no random numbers. `held` are the actions of the last tick; None
+    if no action sticks.
     """
 
     packed: Packed
     root: Wide
     age: Wide
+    held: Array | None = None
 
 
 class Gymnax(JaxHabitat, Settings):
@@ -62,7 +64,9 @@ class Gymnax(JaxHabitat, Settings):
         "no food",
     )
     squash: bool = Field(False, description="true: an unbounded sense x becomes x / (1 + |x|)")
-
+    sticky: float = Field(
+        0.0, ge=0, lt=1, description="probability that a tick repeats the last action"
+    )
     rate: float = Field(20.0, gt=0, description="ticks shown in a second of a video")
 
     def __hash__(self) -> int:
@@ -143,7 +147,13 @@ class Gymnax(JaxHabitat, Settings):
     def reset(self, words: Array) -> Body:
         """Return bodies from words uint32 (N, 2)."""
         root, age = Wide(words[:, 0], words[:, 1]), zero(words.shape[:1])
-        return Body(self._mapped(self._birth, _key(root, age)), root, age)
+        held = self._at_rest(len(words)) if self.sticky else None
+        return Body(self._mapped(self._birth, _key(root, age)), root, age, held)
+
+    def _at_rest(self, count: int) -> Array:
+        """Return the actions before the first tick: button 0, or outputs of 0."""
+        _, output = self._shapes
+        return jnp.zeros((count, *output.shape), output.dtype)
 
     def sense(self, bodies: Body) -> Array:
         """Return what bodies sense, float32 (N, senses_size)."""
@@ -174,13 +184,28 @@ class Gymnax(JaxHabitat, Settings):
         one = Wide(jnp.uint32(0), jnp.uint32(1))
         age = bodies.age + one if self._draws else bodies.age
         key = _key(bodies.root, age)
+        if bodies.held is not None:
+            action = self._stuck(bodies.root, age, bodies.held, action)
         scaled = () if factors is None else (factors,)
         packed, values = self._mapped(self._tick, key, bodies.packed, action, *scaled)
-        return Body(packed, bodies.root, age), values
+        held = None if bodies.held is None else action
+        return Body(packed, bodies.root, age, held), values
+
+    def _stuck(self, root: Wide, age: Wide, held: Array, action: Array) -> Array:
+        """Return the actions of a tick: the last ones with probability `sticky` (Machado et al. 2018).
+
+        Ages have fewer than 63 bits, so the highest bit of a counter makes these words other ones
+        than the environment's keys.
+        """
+        counter = Wide(age.hi | np.uint32(2**31), age.lo)
+        repeats = encrypt(root, counter).lo < np.uint32(int(self.sticky * 2**32))
+        return jnp.where(repeats.reshape(-1, *[1] * (action.ndim - 1)), held, action)
 
     @cached_property
     def _draws(self) -> bool:
         """Whether a tick draws random numbers."""
+        if self.sticky:
+            return True
         with simulator.traced():
             return uses_first(self._tick, simulator.KEY, *self._shapes)
 
