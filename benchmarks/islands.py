@@ -33,11 +33,13 @@ WORLDS: dict[str, tuple[str, dict[str, Any], int]] = {
         "MinAtar-Breakout-survival",
         {
             "cells": 320,
+            "brain": {"kind": "recurrent", "hidden": 32},
             "habitat": {
+                "sticky": 0.0,
                 "islands": [
                     {"name": name.lower(), "habitat": {"env": f"{name}-MinAtar"}}
                     for name in ("Asterix", "Breakout", "Freeway", "SpaceInvaders", "Seaquest")
-                ]
+                ],
             },
         },
         100,

@@ -62,3 +62,26 @@ def test_a_box_becomes_minus_one_to_one_unless_it_is_within_these_or_a_point(
     places = np.float32([low, low + width / 2, low + width])
     kept = width == 0 or max(-low, low + width) <= 1
     np.testing.assert_allclose(senses.of(places), places if kept else [-1, 0, 1], atol=1e-3)
+
+
+@pytest.mark.parametrize(("sight", "reach"), [(None, 4), (1, 1), (6, 6)])
+def test_a_player_perceives_what_lies_around_it(sight: int | None, reach: int) -> None:
+    """Everything that is seen is compared with a plain loop over the cells around the player."""
+    rng = np.random.default_rng(0)
+    senses = Senses(None, jax.ShapeDtypeStruct((3, 5, 2), jnp.float32), False, 1, sight)
+    assert senses.grid == (2 * reach + 1, 2 * reach + 1, 2)
+    for row, column in np.ndindex(3, 5):
+        grid = rng.random((3, 5, 2)).astype(np.float32)
+        grid[..., 1] = 0
+        grid[row, column, 1] = 1
+        seen = np.asarray(senses.of(grid)).reshape(senses.grid)
+        for y, x in np.ndindex(seen.shape[:2]):
+            there = (row + y - reach, column + x - reach)
+            within = 0 <= there[0] < 3 and 0 <= there[1] < 5
+            np.testing.assert_array_equal(seen[y, x], [grid[*there, 0], 0] if within else [0, 1])
+
+
+def test_a_centre_that_is_no_channel_of_a_grid_is_refused() -> None:
+    for shape, centre in (((4, 5, 2), 2), ((9,), 0)):
+        with pytest.raises(ValueError, match=f"no grid with a channel {centre}"):
+            Senses(None, jax.ShapeDtypeStruct(shape, jnp.float32), False, centre)

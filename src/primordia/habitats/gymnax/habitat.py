@@ -64,6 +64,15 @@ class Gymnax(JaxHabitat, Settings):
         "no food",
     )
     squash: bool = Field(False, description="true: an unbounded sense x becomes x / (1 + |x|)")
+    centre: int | None = Field(
+        None,
+        ge=0,
+        description="channel of a grid that shows the player; senses are what lies around it"
+        " (default: senses are the whole grid as it is)",
+    )
+    sight: int | None = Field(
+        None, ge=1, description="cells seen around `centre` in each direction (default: all)"
+    )
     sticky: float = Field(
         0.0, ge=0, lt=1, description="probability that a tick repeats the last action"
     )
@@ -95,7 +104,7 @@ class Gymnax(JaxHabitat, Settings):
     def senses(self) -> Senses:
         """The conversion of observations to senses."""
         space, example = self.simulator.observation_space, self.simulator.example.observation
-        return Senses(space, example, self.squash)
+        return Senses(space, example, self.squash, self.centre, self.sight)
 
     @cached_property
     def names(self) -> Names:

@@ -5,7 +5,7 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jax import Array
+from jax import Array, lax
 
 from primordia.habitats.contract import Continuous, Discrete
 
@@ -50,8 +50,19 @@ class Actions:
 class Senses:
     """Observations as flat float32 senses; a number with a bound beyond -1 or 1 is scaled to [-1, 1]."""
 
-    def __init__(self, space: Any, example: Any, squash: bool) -> None:
-        """Use the space, or None, and an observation's shapes and types."""
+    def __init__(
+        self,
+        space: Any,
+        example: Any,
+        squash: bool,
+        centre: int | None = None,
+        sight: int | None = None,
+    ) -> None:
+        """Use the space, or None, and an observation's shapes and types.
+
+        Raises:
+            ValueError: there is a `centre`, and the observation is not a grid with this channel.
+        """
         self._choices = count if isinstance(count := getattr(space, "n", None), int) else 0
         self._squash = squash
         leaves = jax.tree.leaves(example)
@@ -65,6 +76,11 @@ class Senses:
             low, high = 0, self._choices - 1
         self._low, self._high = (np.float32(each).ravel() for each in (low, high))
         bounded, middle, half = _bounds(low, high, leaves[0].shape)
+        self._view: View | None = None
+        if centre is not None:
+            self._view = View(self.grid, centre, sight)
+            self.grid = self._view.shape
+            self.size = int(np.prod(self.grid))
         self._unbounded = ~bounded
         scaled = bounded & (np.abs(middle) + half > 1) & (half > 0)
         self._middle = np.where(scaled, middle, 0).astype(np.float32)
@@ -83,7 +99,7 @@ class Senses:
             flat = (flat - self._middle) * self._scale
         if self._squash:
             flat = jnp.where(self._unbounded, flat / (1 + jnp.abs(flat)), flat)
-        return flat
+        return self._view.of(flat) if self._view else flat
 
     def declared(self, observed: Array) -> Array:
         """Return whether observations, float32 (N, S), are in their space, bool (N,)."""
@@ -93,6 +109,33 @@ class Senses:
     def unbounded(self) -> np.ndarray:
         """Return which numbers of an observation have no bounds, bool (S,)."""
         return self._unbounded
+
+
+class View:
+    """What lies around the player of a grid, whose place is the largest number of one channel.
+
+    In what is perceived this channel has 1 where the grid ends, and 0 within the grid.
+    """
+
+    def __init__(self, grid: tuple[int, ...] | None, centre: int, sight: int | None) -> None:
+        """Take the grid's (height, width, channels), the player's channel, and the cells that are seen in
+        each direction; None: all.
+        """
+        if grid is None or not 0 <= centre < grid[2]:
+            raise ValueError(f"centre: the observations are no grid with a channel {centre}")
+        self._grid, self._centre = grid, centre
+        self._sight = max(grid[:2]) - 1 if sight is None else sight
+        self.shape = (*[2 * self._sight + 1] * 2, grid[2])
+
+    def of(self, flat: Array) -> Array:
+        """Return the senses of one body, float32 (size,), from all numbers of its grid."""
+        grid = flat.reshape(self._grid)
+        row, column = divmod(jnp.argmax(grid[..., self._centre]), self._grid[1])
+        wide = [(self._sight, self._sight)] * 2
+        around = jnp.pad(grid, [*wide, (0, 0)])
+        outside = jnp.pad(jnp.zeros(self._grid[:2], flat.dtype), wide, constant_values=1)
+        around = around.at[..., self._centre].set(outside)
+        return lax.dynamic_slice(around, (row, column, 0), self.shape).ravel()
 
 
 def flattened(observation: Any) -> Array:
