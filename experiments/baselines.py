@@ -110,8 +110,9 @@ def best_founder(search: Search) -> np.ndarray:
 
 
 def genetic_algorithm(search: Search) -> np.ndarray:
-    """Return the elite of the last generation; children are mutants by the task's own scales."""
-    scales = per_weight(search.law, "scale")
+    """Return the elite of the last generation; all children are mutants by the task's own mutation."""
+    scales, density = per_weight(search.law, "scale"), search.law.heredity.mutation.density
+    choice = np.random.default_rng([search.seed, 1])
     generation = search.founders(POPULATION)
     lived = search.lifespans(generation)
     while True:
@@ -120,7 +121,8 @@ def genetic_algorithm(search: Search) -> np.ndarray:
         if search.over:
             return elite
         chosen = parents[search.noise.integers(PARENTS, size=POPULATION - 1)]
-        children = chosen + scales * search.noise.standard_normal(chosen.shape)
+        changes = scales * search.noise.standard_normal(chosen.shape)
+        children = chosen + np.where(choice.random(chosen.shape) < density, changes, 0)
         generation = np.concatenate([elite[None], children])
         lived = search.lifespans(generation)
 
