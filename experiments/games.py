@@ -5,8 +5,8 @@
 The experiments must have been run (`primordia experiment`). An Atari player plays in four ways: the game
 of its task; games with sticky buttons and no-ops at the start; the game of its task with frozen senses;
 and the games with sticky buttons blindly, with the buttons that it pressed in the game of its task. The
-games of robots and poles all begin differently. A robot plays fresh games in three ways: seeing, with
-frozen senses, and blindly. Pole balancers and organisms of gymnax play fresh games.
+games of robots and poles all begin differently. Robots and organisms of gymnax play fresh games in three
+ways: seeing, with frozen senses, and blindly. Pole balancers play fresh games.
 
 The longest-lived of many may be as good by luck as by descent. So all organisms that are alive at the
 end play one unknown game each. As many founders as each world of the reference had births live one life;
@@ -31,6 +31,11 @@ from primordia.runs.records import Records
 GAMES = 5
 TICKS = 20_000
 NOISE = {"sticky": 0.25, "noops": 30}
+FRESH: dict[str, dict[str, Any]] = {
+    "fresh starts": {},
+    "senses frozen": {"senses": "frozen"},
+    "blindly": {"senses": "ignored"},
+}
 WAYS: dict[str, dict[str, dict[str, Any]]] = {
     "atari": {
         "own game": {},
@@ -39,12 +44,8 @@ WAYS: dict[str, dict[str, dict[str, Any]]] = {
         "blindly, sticky, no-ops": {"senses": "ignored", "habitat": NOISE},
     },
     "cartpole": {"fresh starts": {}},
-    "gymnax": {"fresh starts": {}},
-    "mujoco": {
-        "fresh starts": {},
-        "senses frozen": {"senses": "frozen"},
-        "blindly": {"senses": "ignored"},
-    },
+    "gymnax": FRESH,
+    "mujoco": FRESH,
 }
 UNKNOWN = dict.fromkeys(WAYS, "fresh starts") | {"atari": "sticky, no-ops"}
 """the way in which organisms that were not chosen play"""
