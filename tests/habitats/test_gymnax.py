@@ -10,7 +10,8 @@ import pytest
 from primordia.config import validated
 from primordia.errors import InputError
 from primordia.habitats.contract import Ability, Continuous, Discrete
-from primordia.habitats.gymnax.habitat import Gymnax, _kind, _parts
+from primordia.habitats.gymnax.habitat import Gymnax
+from primordia.habitats.gymnax.quantities import kind, parts
 from primordia.jaxprs import uses_first
 from primordia.testing import check_habitat
 
@@ -147,12 +148,12 @@ def test_what_is_scored_has_the_reward_and_the_time_limit() -> None:
 
 def test_parts_are_named_by_their_places_and_arrays_are_lists_of_numbers() -> None:
     tree = {"a": {"b": 1.5, "c": np.arange(6).reshape(2, 3)}, "d": [True, np.float32(2)]}
-    parts = _parts(tree)
-    assert {name: each.tolist() for name, each in parts.items()} == {
+    found = parts(tree)
+    assert {name: each.tolist() for name, each in found.items()} == {
         "a.b": 1.5, "a.c": [*range(6)], "d.0": True, "d.1": 2.0,
     }  # fmt: skip
     kinds = {"a.b": "amount", "a.c": 6, "d.0": "condition", "d.1": "amount"}
-    assert _kind({"state": parts}) == {"state": kinds}
+    assert kind({"state": found}) == {"state": kinds}
 
 
 def test_equal_settings_share_compiled_code() -> None:

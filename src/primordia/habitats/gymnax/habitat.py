@@ -19,10 +19,10 @@ from pydantic import Field, model_validator
 from primordia.habitats import conditions
 from primordia.habitats.conditions import Expression, Names
 from primordia.habitats.contract import Continuous, Discrete, JaxHabitat, Outcome
-from primordia.habitats.gymnax import libraries, simulator
+from primordia.habitats.gymnax import libraries, quantities, simulator
 from primordia.habitats.gymnax.packed import Packed, pack
-from primordia.habitats.gymnax.simulator import Simulator, Step
-from primordia.habitats.gymnax.spaces import Actions, Senses, flattened
+from primordia.habitats.gymnax.simulator import Simulator
+from primordia.habitats.gymnax.spaces import Actions, Senses
 from primordia.habitats.gymnax.sums import ordered
 from primordia.jaxprs import uses_first
 from primordia.random.keys import encrypt
@@ -109,7 +109,7 @@ class Gymnax(JaxHabitat, Settings):
     @cached_property
     def names(self) -> Names:
         """The kinds of all quantities that expressions can name."""
-        return _kind(jax.eval_shape(_values, self.simulator.example))
+        return quantities.kind(jax.eval_shape(quantities.of, self.simulator.example))
 
     @cached_property
     def _fatal_condition(self) -> Expression | None:
@@ -273,36 +273,7 @@ class Gymnax(JaxHabitat, Settings):
         """Return the same as `_tick`, with other values of some parameters."""
         state = packed.state(self.senses_size, self.simulator.example.state)
         stepped = self.simulator.step(key, state, self._actions.of(output), amounts)
-        return pack(self.senses.of(stepped.observation), stepped.state), _values(stepped)
-
-
-def _values(stepped: Step) -> dict[str, Any]:
-    """Return the quantities that expressions can name, of one body."""
-    return {
-        "obs": flattened(stepped.observation),
-        "reward": stepped.reward,
-        "done": stepped.done,
-        "info": _parts(stepped.info),
-        "state": _parts(stepped.state),
-    }
-
-
-def _kind(value: Any) -> Any:
-    """Return the kind of a quantity of one body, or the kinds of its parts."""
-    if isinstance(value, dict):
-        return {name: _kind(each) for name, each in value.items()}
-    if value.shape:
-        return value.shape[0]
-    return "condition" if value.dtype == bool else "amount"
-
-
-def _parts(tree: Any) -> dict[str, Array]:
-    """Return the numbers of a tree by dotted name, arrays as (K,)."""
-    named = jax.tree_util.tree_leaves_with_path(tree)
-    return {
-        jax.tree_util.keystr(path, simple=True, separator="."): leaf.ravel() if leaf.shape else leaf
-        for path, leaf in ((path, jnp.asarray(leaf)) for path, leaf in named)
-    }
+        return pack(self.senses.of(stepped.observation), stepped.state), quantities.of(stepped)
 
 
 def _key(root: Wide, age: Wide) -> Array:
