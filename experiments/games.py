@@ -9,9 +9,9 @@ games of robots and poles all begin differently. Robots and organisms of gymnax 
 ways: seeing, with frozen senses, and blindly. Pole balancers play fresh games.
 
 The longest-lived of many may be as good by luck as by descent. So all organisms that are alive at the
-end play one unknown game each. As many founders as each world of the reference had births live one life;
-the longest-lived of them plays as champions do. Founders as they come play one unknown game each. The
-table goes to `results/` beside the file, as Markdown and CSV.
+end play one unknown game each. As many founders as each world of the reference had births, at most MOST,
+live one life; the longest-lived of them plays as champions do. Founders as they come play one unknown
+game each. The table goes to `results/` beside the file, as Markdown and CSV.
 """
 
 import csv
@@ -30,6 +30,7 @@ from primordia.runs.records import Records
 
 GAMES = 5
 TICKS = 20_000
+MOST = 10_000
 NOISE = {"sticky": 0.25, "noops": 30}
 FRESH: dict[str, dict[str, Any]] = {
     "fresh starts": {},
@@ -58,7 +59,7 @@ def report(file: Path) -> None:
         run = primordia.load(folder).opened()
         for group in evolved(run):
             rows += played(f"{folder.name}: {group.name}", run, group)
-        for group in unevolved(run, most=None) if number == 0 else ():
+        for group in unevolved(run, MOST) if number == 0 else ():
             rows += played(group.name, run, group)
         write_rows(file.parent / "results" / f"{file.stem}-games", rows, summary(rows))
 
@@ -113,8 +114,8 @@ def summary(rows: list[dict[str, Any]]) -> str:
         f"Medians over worlds (quartiles) of the median organism's median game. Champions and best"
         f" founders play {GAMES} games; one is enough where nothing is drawn at random. The others play"
         " one each. The best founder of a world is the longest-lived of as many founders as the reference"
-        " had births there. Where nothing is drawn at random, the own game of a champion or best founder"
-        f" is the one that chose it; the others are not. Games were cut after {TICKS:,} ticks."
+        f" had births there, at most {MOST:,}. Where nothing is drawn at random, the own game of a champion"
+        f" or best founder is the one that chose it; the others are not. Games were cut after {TICKS:,} ticks."
     )
     return f"{table(['who', 'plays', 'worlds', 'organisms', *outcomes], lines)}\n\n{note}"
 
