@@ -114,8 +114,9 @@ def summary(rows: list[dict[str, Any]]) -> str:
         f"Medians over worlds (quartiles) of the median organism's median game. Champions and best"
         f" founders play {GAMES} games; one is enough where nothing is drawn at random. The others play"
         " one each. The best founder of a world is the longest-lived of as many founders as the reference"
-        f" had births there, at most {MOST:,}. Where nothing is drawn at random, the own game of a champion"
-        f" or best founder is the one that chose it; the others are not. Games were cut after {TICKS:,} ticks."
+        f" had births there, at most {MOST:,}. Where nothing is drawn at random, the own game of a"
+        " champion or best founder is the one that chose it; the others are not. Games were cut after"
+        f" {TICKS:,} ticks."
     )
     return f"{table(['who', 'plays', 'worlds', 'organisms', *outcomes], lines)}\n\n{note}"
 
