@@ -36,13 +36,13 @@ KNOWN = {
     "7,141": "the ticks of a round of Boxing",
     "8,192": "the ticks of a game of Freeway",
     "3,000": "the length of games from any start, in starts.py",
-    "512": "founders of a trial, as the assay draws them",
     "1.7": "0.3 times the root of 32, a spectral radius",
     "0.004": "a mutation's scale over that of founders, both set by tasks",
     "8,000": "the length at which games of the first seeds were cut, and lives of tanks in words",
     **dict.fromkeys(
         ("1,800", "3,589", "12,139", "787"), "reinforcement learning with robots, in tasks.md"
     ),
+    "131": "PPO in Space Invaders, in the table of gymnax",
     **dict.fromkeys(
         ("2,360", "15,820", "16,411", "17,367", "26,300", "37,800", "62,010", "98,235"),
         "papers that the table of BattleZone names",

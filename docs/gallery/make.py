@@ -133,7 +133,7 @@ The last command of each entry films a world, and the others run it again, to th
 compare, `primordia info RUN --json` prints the digest of the world, a hash of its whole
 history; this page has its first 16 digits. The pictures are small copies of the films. Type the
 commands in the root of a clone. Games need the [extra](../how-to/install.md) `atari`, robots `mujoco`,
-MountainCar `gymnasium`, and Asterix `gymnax`.
+MountainCar `gymnasium`, and Space Invaders `gymnax`.
 """
 
 
