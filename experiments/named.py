@@ -16,5 +16,6 @@ def for_each_named(do: Callable[[Path], None], usage: str | None) -> None:
 
 
 def arms(file: Path) -> list[Path]:
-    """Return the folder of each arm's runs, the reference first."""
-    return list(campaign.recorded(Path("runs", file.stem)).arms.values())
+    """Return the folder of the runs of each arm that has been run, the reference first."""
+    folders = campaign.recorded(Path("runs", file.stem)).arms.values()
+    return [folder for folder in folders if folder.is_dir()]

@@ -1,0 +1,86 @@
+"""How well do players do that a person wrote, in the games of MinAtar's tasks?
+
+    python experiments/handmade.py
+
+Nothing has to be run before. Each player plays GAMES games of at most TICKS ticks: in Breakout one stays
+under the ball, with and without sticky actions, and another goes where the ball will be in the next tick;
+in Freeway one always goes up. The table goes to `experiments/skill/results/minatar-handmade`.
+"""
+
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from games import write_rows
+
+from primordia import config, device
+from primordia.comparison.tables import spread_text
+from primordia.experiments.results import table
+
+GAMES = 200
+TICKS = {"Breakout": 1_000, "Freeway": 2_500}
+"""Length of a game, which is the environment's own."""
+PADDLE, BALL, TRAIL = range(3)
+NOOP, LEFT, RIGHT = range(3)
+UP = 1
+RESULTS = Path(__file__).parent / "skill" / "results" / "minatar-handmade"
+
+
+def played(game: str, sticky: float, act: Callable) -> tuple[np.ndarray, np.ndarray]:
+    """Return the ticks and the score of each game, (GAMES,)."""
+    task = f"MinAtar-{game}-survival"
+    habitat = config.load(task, {"habitat": {"sticky": sticky}}).build_habitat()
+    words = np.random.default_rng(1000).integers(0, 2**32, (GAMES, 2), dtype=np.uint32)
+    bodies, tick = habitat.reset(words), jax.jit(habitat.tick)
+    alive, lived, score = np.ones(GAMES, bool), np.zeros(GAMES, int), np.zeros(GAMES)
+    for _ in range(TICKS[game]):
+        bodies, values = tick(bodies, act(habitat.sense(bodies)))
+        score += alive * np.asarray(values["reward"])
+        alive &= ~np.asarray(values["done"])
+        lived += alive
+    return lived, score
+
+
+def follow(senses: jax.Array, ahead: bool = False) -> jax.Array:
+    """Return the button that brings the paddle under the ball, int32 (N,)."""
+    grid = senses.reshape(-1, 10, 10, 4)
+    paddle, ball, before = (grid[..., part].sum(1).argmax(1) for part in (PADDLE, BALL, TRAIL))
+    aim = jnp.clip(2 * ball - before, 0, 9) if ahead else ball
+    return jnp.where(aim < paddle, LEFT, jnp.where(aim > paddle, RIGHT, NOOP)).astype(jnp.int32)
+
+
+def up(senses: jax.Array) -> jax.Array:
+    """Return the button that goes up, int32 (N,)."""
+    return jnp.full(len(senses), UP, jnp.int32)
+
+
+PLAYERS: tuple[tuple[str, str, float, Callable], ...] = (
+    ("stays under the ball", "Breakout", 0.1, follow),
+    ("goes where the ball will be", "Breakout", 0.1, partial(follow, ahead=True)),
+    ("stays under the ball, nothing sticks", "Breakout", 0.0, follow),
+    ("always goes up", "Freeway", 0.1, up),
+)
+
+
+def main() -> None:
+    """Write the table."""
+    device.prepare()
+    rows, lines = [], []
+    for name, game, sticky, act in PLAYERS:
+        lived, score = played(game, sticky, act)
+        rows += [
+            {"player": name, "game": game, "sticky": sticky, "lifespan": int(a), "score": float(b)}
+            for a, b in zip(lived, score, strict=True)
+        ]
+        spreads = (spread_text(each.tolist()) for each in (lived, score))
+        lines.append([name, game, f"{sticky:g}", *spreads])
+    head = ["player", "game", "sticky", "lifespan", "score"]
+    note = f"Medians (quartiles) of {GAMES} games. Nobody starves in Freeway here."
+    write_rows(RESULTS, rows, f"{table(head, lines)}\n\n{note}")
+
+
+if __name__ == "__main__":
+    main()
