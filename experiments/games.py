@@ -31,6 +31,7 @@ from primordia.runs.records import Records
 GAMES = 5
 TICKS = 20_000
 MOST = 10_000
+"""Largest number of founders of a world among which the best is chosen."""
 NOISE = {"sticky": 0.25, "noops": 30}
 FRESH: dict[str, dict[str, Any]] = {
     "fresh starts": {},

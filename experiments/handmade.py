@@ -1,4 +1,4 @@
-"""How well do players do that a person wrote, in the games of MinAtar's tasks?
+"""Measure hand-written players in the games of MinAtar's tasks.
 
     python experiments/handmade.py
 
@@ -78,7 +78,7 @@ def main() -> None:
         spreads = (spread_text(each.tolist()) for each in (lived, score))
         lines.append([name, game, f"{sticky:g}", *spreads])
     head = ["player", "game", "sticky", "lifespan", "score"]
-    note = f"Medians (quartiles) of {GAMES} games. Nobody starves in Freeway here."
+    note = f"Medians (quartiles) of {GAMES} games. Hunger is off in Freeway."
     write_rows(RESULTS, rows, f"{table(head, lines)}\n\n{note}")
 
 

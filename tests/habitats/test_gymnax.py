@@ -182,6 +182,8 @@ WRONG: list[tuple[dict[str, Any], str]] = [
         "type and shape of its default, 0.5",
     ),
     ({"env": "tests.walks:Walk", "rate": 0.0}, "habitat.rate"),
+    ({"env": "tests.walks:Walk", "sight": 2}, "sight: needs centre"),
+    ({"env": "tests.walks:Walk", "centre": 0}, "centre: the observations are no grid"),
     ({"env": "tests.walks:Walk", "fatal": "state"}, "'state' has parts"),
     ({"env": "tests.walks:Walk", "fatal": "obs[3] > 0"}, "obs goes from obs[0] to obs[2]"),
     ({"env": "tests.walks:Walk", "food": "lives"}, "known: done, info, obs, reward, state"),
@@ -217,6 +219,7 @@ def test_it_is_known_whether_a_function_uses_its_first_argument() -> None:
 def test_ages_are_counted_only_where_a_tick_draws() -> None:
     assert (np.asarray(lived(walk(), 3)[0].age.lo) == 3).all()
     assert not np.asarray(lived(Gymnax(env="tests.walks:Played"), 3)[0].age.lo).any()
+    assert (np.asarray(lived(Gymnax(env="tests.walks:Played", sticky=0.5), 3)[0].age.lo) == 3).all()
 
 
 def test_a_sticky_action_is_that_of_the_tick_before_with_its_probability() -> None:

@@ -25,7 +25,7 @@ from primordia.habitats.gymnax.simulator import Simulator
 from primordia.habitats.gymnax.spaces import Actions, Senses
 from primordia.habitats.gymnax.sums import ordered
 from primordia.jaxprs import uses_first
-from primordia.random.keys import encrypt
+from primordia.random.keys import chance, encrypt
 from primordia.random.wide import Wide, zero
 from primordia.settings.base import Settings
 
@@ -83,6 +83,8 @@ class Gymnax(JaxHabitat, Settings):
 
     @model_validator(mode="after")
     def _check_settings(self) -> "Gymnax":
+        if self.sight is not None and self.centre is None:
+            raise ValueError("sight: needs centre, the channel that shows the player")
         assert self._actions
         assert self.senses
         assert self._fatal_condition or not self.fatal
@@ -203,11 +205,11 @@ class Gymnax(JaxHabitat, Settings):
     def _stuck(self, root: Wide, age: Wide, held: Array, action: Array) -> Array:
         """Return the actions of a tick: the last ones with probability `sticky` (Machado et al. 2018).
 
-        Ages have fewer than 63 bits, so the highest bit of a counter makes these words other ones
-        than the environment's keys.
+        The environment's keys are made from ages, which are below 2^63. Here the highest bit of the
+        counter is set, so these words are never among the keys.
         """
         counter = Wide(age.hi | np.uint32(2**31), age.lo)
-        repeats = encrypt(root, counter).lo < np.uint32(int(self.sticky * 2**32))
+        repeats = chance(encrypt(root, counter).lo, jnp.float32(self.sticky))
         return jnp.where(repeats.reshape(-1, *[1] * (action.ndim - 1)), held, action)
 
     @cached_property

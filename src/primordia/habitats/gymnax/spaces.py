@@ -118,8 +118,11 @@ class View:
     """
 
     def __init__(self, grid: tuple[int, ...] | None, centre: int, sight: int | None) -> None:
-        """Take the grid's (height, width, channels), the player's channel, and the cells that are seen in
-        each direction; None: all.
+        """Take the grid's (height, width, channels), the player's channel, and the number of cells seen
+        in each direction; None: all.
+
+        Raises:
+            ValueError: there is no grid, or it has no such channel.
         """
         if grid is None or not 0 <= centre < grid[2]:
             raise ValueError(f"centre: the observations are no grid with a channel {centre}")
