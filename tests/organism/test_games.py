@@ -13,6 +13,7 @@ from primordia.organism.playing import evaluation
 from primordia.organism.playing.evaluation import Evaluation, Spread, changed, judged
 from primordia.organism.playing.games import Games, Players, _marks
 from primordia.organism.playing.seats import Stretch
+from primordia.random.wide import wide
 from primordia.settings.base import Settings
 from tests.toys import Meadow
 from tests.worlds import MEADOW, config
@@ -61,7 +62,8 @@ def evaluated(
     habitat_before: Any = SimpleNamespace(name="unchanged")
     law: Any = Rules(SimpleNamespace(kind=motor))
     rates: Any = None
-    own = Players(law, habitat_before, np.zeros((2, 5), np.float32), rates, rates)
+    keys = wide(np.arange(2))
+    own = Players(law, habitat_before, np.zeros((2, 5), np.float32), keys, rates)
     asked: dict[str, Any] = {"games": 7, "ticks": 100, "senses": "live", "habitat": {}, **given}
     return judged(config(), own, NUMBERS, **asked)
 

@@ -66,7 +66,7 @@ SENSES = {
 @click.option(
     "--open-loop",
     is_flag=True,
-    help="Ignore the senses: repeat the actions of an earlier game in the run's own task.",
+    help="Ignore the senses: repeat the actions of another game in the run's own task.",
 )
 @recorded_device_option
 @trust_option

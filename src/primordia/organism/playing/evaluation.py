@@ -17,6 +17,8 @@ from primordia.history.islands import number_of
 from primordia.organism.playing.games import Games, Players, play
 from primordia.organism.playing.players import moved, players_of
 from primordia.organism.playing.seats import Frozen
+from primordia.random.keys import Purpose, stream
+from primordia.random.wide import wide
 from primordia.runs.records import Records, on_its_device
 from primordia.settings.fields import setting_fields
 from primordia.settings.tables import NONE, did_you_mean, merged, replaced
@@ -110,8 +112,8 @@ def evaluate(
         games: number of games of each organism; one game if all would be the same.
         ticks: length at which a game is cut; whole games are also cut at the habitat's `episode`.
         senses: `live`: as usual; `frozen`: senses keep their values from the start of a game;
-            `ignored`: each organism repeats the actions of an earlier game, which it played with
-            its task's settings.
+            `ignored`: each organism repeats the actions of another game, which it played with its
+            task's settings.
         habitat: changed settings of the habitat, such as `{"senses": [49, 50]}`.
         on: name of the island on which all play; by default each plays on the island of its birth.
         changes: further changed settings as keywords, such as `sticky=0.25, noops=30`.
@@ -166,7 +168,7 @@ def judged(
     if games < 1 or ticks < 1:
         raise InputError("evaluate needs at least one game of at least one tick")
     players = (there or own)._replace(habitat=changed(config, habitat).build_habitat())
-    script = play(own, 1, ticks) if senses == "ignored" else None
+    script = play(elsewhere(own), 1, ticks) if senses == "ignored" else None
     fixed = players.deterministic
     count = 1 if fixed else games
     frozen = all_senses(players) if senses == "frozen" else None
@@ -181,6 +183,12 @@ def judged(
         )
         for k, (organism, world) in enumerate(numbers)
     ]
+
+
+def elsewhere(players: Players) -> Players:
+    """Return the players with other random bits: their games are none of those that are judged."""
+    first = wide(np.zeros(len(players.genomes), np.uint64))
+    return players._replace(keys=stream(players.keys, Purpose.REBIRTH, first))
 
 
 def all_senses(players: Players) -> Frozen:
