@@ -49,11 +49,11 @@ from primordia.random.wide import wide
 SEED, SEEDS = 1000, 10
 LONGEST = 20_000
 """Ticks at which a life is cut, in the search and in games."""
-POPULATION, PARENTS = 128, 10
+POPULATION, PARENTS = 256, 10
 """Genomes of a generation; the longest-lived of them that have children, in the genetic algorithm."""
 AGAIN = 5
 """Further lives of each parent, which choose the elite, where lives are not all the same."""
-SPREAD, RATE = 0.1, 0.05
+SPREAD, RATE = 0.3, 0.05
 """The evolution strategy's noise and Adam's rate, in standard deviations of founders' weights."""
 COLUMNS = ("lifespan", "score", "length")
 

@@ -171,6 +171,16 @@ def test_a_line_tells_its_migrations_if_there_are_islands() -> None:
     ]  # fmt: skip
 
 
+def test_a_line_tells_when_brain_and_body_became_good_if_bodies_are_inherited() -> None:
+    steps = [
+        Step(3 * n, 10 + n, 50 + n, "mutant", 3, 90, brain=brain, body=90)
+        for n, brain in enumerate((40, 90))
+    ]
+    table = cells(tables.line("run", [Line(11, 3, 9, 2, steps)]))
+    assert table["brain as good from"] == ["11 (generation 3, tick 51)"]
+    assert table["body as good from"] == ["10 (generation 0, tick 50)"]
+
+
 def test_two_genomes_share_the_living() -> None:
     """The second wins two of four worlds, the first one, and one is a draw."""
     late = np.array([0.75, 0.25, 0.0, 0.5])

@@ -20,6 +20,7 @@ from primordia.organism.playing.games import lifespans
 from primordia.organism.playing.players import players_of
 from primordia.organism.reliving.compare import relive
 from primordia.phylogeny.table import ids
+from primordia.report.content import view
 from primordia.report.curves import panels
 from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
@@ -194,6 +195,17 @@ def test_traits_over_births_stand_beside_their_neutral_shadows(
     figure = draw(opened, 0)
     assert figure is not None
     assert [axes.get_title() for axes in figure.axes] == ["pole", "gravity"]
+
+
+def test_nodes_of_the_phylogeny_in_the_report_have_their_traits(run: Path) -> None:
+    opened, traits = Archive(run), config(POLES).traits
+    assert traits is not None
+    tree = view(opened, 1, "seed", 1)["tree"]
+    assert tree["traits"]["names"] == ["pole", "gravity"]
+    for node in tree["nodes"]:
+        genome = primordia.load(run).organism(node["number"], 1).genome()
+        np.testing.assert_allclose(node["traits"], traits.factors(genome[None, -2:])[0], atol=1e-4)
+    assert len({tuple(node["traits"]) for node in tree["nodes"]}) > 3
 
 
 def test_portraits_show_ancestors_with_their_own_bodies(run: Path) -> None:

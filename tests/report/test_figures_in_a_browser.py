@@ -189,6 +189,33 @@ def test_the_phylogeny_is_read_by_mouse_and_keys(torus_page: Path, page: Page) -
     page.until(lambda: page.text(".tree + .readout") != readout)
 
 
+def test_the_phylogeny_is_coloured_by_a_trait(torus_page: Path, page: Page) -> None:
+    """Equal ratios are equally far apart in the scale, and the key has its ends."""
+    page.open_file(torus_page)
+    assert not page.all("#trait"), "bodies are not inherited here"
+    page.script(
+        "window.made = { traits: { names: ['leg', 'arm'], scale: ['#101010', '#202020', '#303030'] },"
+        " nodes: [[1, 0.5], [1, 1], [1, 3], [1, 8]].map((traits) => ({ traits })) };"
+        "window.state = { trait: -1 }; window.painted = 0;"
+        "document.body.append(traitControl(made, state, () => { painted += 1; }))"
+    )
+    choose = "const s = document.getElementById('trait'); s.value = arguments[0];"
+    choose += "s.dispatchEvent(new Event('change')); return [state.trait, painted]"
+    assert page.script(choose, "1") == [1, 1]
+    assert page.text(".scale") == "x 0.50x 8.00"
+    colours = page.script(
+        "const { nodes, traits } = made, range = traitRange(nodes, 1);"
+        "return nodes.map((node) => traitColour(traits.scale, range, node.traits[1]))"
+    )
+    assert colours == ["#101010", "#101010", "#202020", "#303030"]
+    same = "return traitColour(made.traits.scale, traitRange(made.nodes, 0), 1)"
+    assert page.script(same) == "#202020", "all have the same factor"
+    assert page.script("return traitText(made, made.nodes[2])") == ", leg x 1.00, arm x 3.00"
+    assert page.script(choose, "-1") == [-1, 2]
+    assert page.text(".scale") == ""
+    assert page.script("return traitText({}, {})") == ""
+
+
 def test_the_phylogeny_is_drawn_over_births_and_keys_walk_through_its_living(
     world: dict[str, Any], page: Page
 ) -> None:

@@ -1,4 +1,8 @@
-"""The lives of an organism's ancestors: genomes of the line of descent live again."""
+"""The lives of an organism's ancestors: genomes of the line of descent live again.
+
+If bodies are inherited, their brains and bodies live again apart, too: each brain in the body of the
+line's last organism, and each body with the last organism's brain. So it can be seen which came first.
+"""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -17,6 +21,8 @@ from primordia.runs.records import Records
 
 MOST = 200
 """Default number of genomes of a line that live again."""
+PARTS = "brain", "body"
+"""Parts of a genome that live again apart, by their fields of `Step`."""
 GOOD = 0.9
 """A genome counts as good if it lives at least this share of the last genome's life."""
 
@@ -37,6 +43,10 @@ class Step:
     """mean ticks that the genome lived in the games of the line's last organism"""
     island: str | None = None
     """name of the island on which the organism was born; None if its world has no islands"""
+    brain: float | None = None
+    """mean ticks that the genome's brain lived in the last organism's body; None: bodies are the same"""
+    body: float | None = None
+    """mean ticks that the last organism's brain lived in the genome's body; None: bodies are the same"""
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain values for JSON."""
@@ -60,9 +70,24 @@ class Line:
     @property
     def good(self) -> Step:
         """The earliest good genome after which all genomes are good, too; see GOOD."""
-        enough = GOOD * self.steps[-1].reborn
-        below = [k for k, step in enumerate(self.steps) if step.reborn < enough]
-        return self.steps[below[-1] + 1 if below else 0]
+        return self._good_from("reborn")
+
+    @property
+    def good_parts(self) -> dict[str, Step]:
+        """The same for `brain` and `body`, each with the last organism's other part; {} if bodies are
+        the same."""
+        return {} if self.spans("body") is None else {part: self._good_from(part) for part in PARTS}
+
+    def spans(self, part: str) -> np.ndarray | None:
+        """Return ticks lived, float64 (steps,), by a field of `Step`; None if bodies are the same."""
+        found = np.array([getattr(step, part) for step in self.steps], float)
+        return None if np.isnan(found).any() else found
+
+    def _good_from(self, part: str) -> Step:
+        spans = self.spans(part)
+        assert spans is not None
+        below = np.flatnonzero(spans < GOOD * spans[-1])
+        return self.steps[below[-1] + 1 if len(below) else 0]
 
     @property
     def largest(self) -> tuple[Step, Step] | None:
@@ -79,7 +104,9 @@ class Line:
         if self.migrations is not None:
             values["migrations"] = self.migrations
         values["steps"] = [step.to_dict() for step in self.steps]
-        return {**values, "good_from": self.good.organism, "largest_step": largest}
+        values |= {"good_from": self.good.organism, "largest_step": largest}
+        parts = {f"{part}_good_from": step.organism for part, step in self.good_parts.items()}
+        return values | parts
 
 
 def line(
@@ -115,24 +142,38 @@ def line(
     chosen = changed[places]
     subject = of_run(run, [(organism, world)], habitat)
     same = subject.players.take(np.zeros(len(chosen), int))
-    genomes = pedigree.genomes(run, rows[chosen])
-    spans = lifespans_in_games(same._replace(genomes=genomes), subject.games(games), ticks)
+    lived = {
+        part: lifespans_in_games(same._replace(genomes=own), subject.games(games), ticks).mean(
+            axis=1
+        )
+        for part, own in _parts(run, pedigree.genomes(run, rows[chosen])).items()
+    }
     lives = run.lives.take(rows[chosen])
     homes = names_of(run.config.islands, run.lives.cell[rows])
     moved = None if homes is None else sum(map(ne, homes[1:], homes))
     steps = [
         Step(
-            generation=int(chosen[k]),
+            generation=int(generation),
             organism=int(lives.id[k]),
             born=int(lives.born[k]),
             birth_cause=BirthCause(lives.birth_cause[k]).label,
             recorded=int(lives.lifespan[k]),
-            reborn=float(span),
-            island=None if homes is None else homes[chosen[k]],
+            island=None if homes is None else homes[generation],
+            **{part: float(spans[k]) for part, spans in lived.items()},
         )
-        for k, span in enumerate(spans.mean(axis=1))
+        for k, generation in enumerate(chosen)
     ]
     return Line(organism, world, len(rows) - 1, len(changed), steps, moved)
+
+
+def _parts(run: Records, genomes: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the genomes of a line (K, P), and those with the last body and with the last brain."""
+    if not (genes := run.layout.genes):
+        return {"reborn": genomes}
+    last = genomes[-1:]
+    brains = np.concatenate([genomes[:, :-genes], np.repeat(last[:, -genes:], len(genomes), 0)], 1)
+    bodies = np.concatenate([np.repeat(last[:, :-genes], len(genomes), 0), genomes[:, -genes:]], 1)
+    return {"reborn": genomes, "brain": brains, "body": bodies}
 
 
 def _changed(run: Records, rows: np.ndarray) -> np.ndarray:

@@ -27,6 +27,11 @@ SHARES = {
     "third_shorter": ("a third shorter", style.VERMILION),
 }
 """Shares of mutants: field -> its name and colour."""
+APART = {
+    "brain": ("brain in the last body", style.GREEN),
+    "body": ("body with the last brain", style.VERMILION),
+}
+"""Parts of a genome in `assays.line`: field -> its name and colour."""
 GROUPS = {"oldest": style.BLUE, "late-born": style.ORANGE, "founders": style.SOFT}
 """Groups of the common garden."""
 
@@ -157,7 +162,11 @@ def garden(found: list[Bed]) -> Figure:
 
 
 def line(found: list[Line]) -> Figure:
-    """Draw the life of each genome on each line over generations, as recorded and when born again."""
+    """Draw the life of each genome on each line over generations, as recorded and when born again.
+
+    If bodies are inherited, also draw the lives of its brain and of its body, each with the other part of
+    the line's last organism.
+    """
     figure = Figure(figsize=(style.PAGE, 2.4 * len(found)))
     for axes, each in zip(figure.subplots(len(found), squeeze=False).flat, found, strict=True):
         generation = [step.generation for step in each.steps]
@@ -166,10 +175,16 @@ def line(found: list[Line]) -> Figure:
         to_the_end = [*generation, each.generations], [*reborn, reborn[-1]]
         axes.step(*to_the_end, where="post", color=style.BLUE)
         axes.plot(generation, recorded, ".", color=style.ORANGE, markersize=4, markeredgewidth=0)
+        for part, (_, colour) in APART.items():
+            if (spans := each.spans(part)) is not None:
+                axes.step(
+                    generation, np.maximum(spans, 1), where="post", color=colour, linewidth=0.8
+                )
         axes.axvline(each.good.generation, color=style.FAINT, zorder=0)
         style.logarithmic(axes.yaxis)
         axes.set(xlabel="generation", ylabel="ticks lived", xlim=(0, max(each.generations, 1)))
         key = {"born again": style.BLUE, "as recorded": style.ORANGE, "as good from": style.SOFT}
+        key |= dict(APART.values()) if each.good_parts else {}
         style.title(axes, f"The line of organism {each.organism} of world {each.world}", key)
     return figure
 

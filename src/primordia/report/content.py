@@ -17,6 +17,7 @@ from primordia.report.film import film
 from primordia.report.ground import Ground, palette
 from primordia.report.lives import films
 from primordia.report.organisms import organisms
+from primordia.report.traits import with_traits
 from primordia.report.tree import tree
 from primordia.report.words import setting, words
 from primordia.runs.records import Records
@@ -98,6 +99,7 @@ def view(run: Records, world: int, name: str, share: int) -> dict[str, Any]:
     """Return the pictures of one world of a run: space-time, organisms, film, phylogeny."""
     several = run.config.islands if run.config.islands.count > 1 else None
     ground = Ground(run.lives.of_world(world), run.config.cells, share, several)
+    living = tree(ground)
     return {
         "name": name,
         "topology": run.config.placement.topology,
@@ -105,7 +107,7 @@ def view(run: Records, world: int, name: str, share: int) -> dict[str, Any]:
         "ground": ground.data(),
         "organisms": organisms(ground.lives, ground.rows),
         "film": film(ground, run.config),
-        "tree": tree(ground),
+        "tree": living and with_traits(living, run, world),
         **({} if several is None else {"islands": islands.places(several)}),
     }
 

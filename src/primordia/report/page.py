@@ -17,8 +17,8 @@ from primordia.printable import printable
 
 SCRIPTS = (
     "arrays", "elements", "numbers", "scheme", "curves", "chart_controls", "world", "ground_view",
-    "ground_paint", "ground_axes", "islands", "ground_pointer", "ground", "organism", "film", "tree",
-    "lives", "arms", "facts", "worlds", "main",
+    "ground_paint", "ground_axes", "islands", "ground_pointer", "ground", "organism", "film", "traits",
+    "tree", "lives", "arms", "facts", "worlds", "main",
 )  # fmt: skip
 """Our scripts in the order of their use, without `.js`; they are joined into one."""
 LIVE = "live"

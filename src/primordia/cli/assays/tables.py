@@ -126,38 +126,36 @@ def garden(name: str, found: list[Any]) -> Told:
 def line(name: str, found: list[Any]) -> Told:
     """Return the table of lines of descent, `assays.line`."""
     islands = any(each.migrations is not None for each in found)
-    columns = [
-        (
-            f"organism {each.organism} of world {each.world}",
-            *((each.steps[-1].island, f"{each.migrations:,}") if islands else ()),
-            f"{each.generations:,}",
-            f"{each.genomes:,}",
-            f"{len(each.steps):,}",
-            f"{each.steps[0].reborn:,.0f}",
-            f"{each.steps[-1].reborn:,.0f}",
-            _birth_text(each.good),
-            _step_text(each.largest),
-        )
-        for each in found
-    ]
+    bodies = any(each.good_parts for each in found)
     names = (
-        *(
-            "",
-            *(("island of birth", "migrations") if islands else ()),
-            "generations",
-            "different genomes",
-            "born again",
-            "ticks that the first lives",
-        ),
-        *("ticks that the last lives", "as good from", "largest step"),
+        *("", *(("island of birth", "migrations") if islands else ())),
+        *("generations", "different genomes", "born again"),
+        *("ticks that the first lives", "ticks that the last lives", "as good from"),
+        *(("brain as good from", "body as good from") if bodies else ()),
+        "largest step",
     )
-    head, *rows = zip(names, *columns, strict=True)
+    head, *rows = zip(names, *(_of_line(each, islands) for each in found), strict=True)
     notes = [
         "As good: this genome and all later ones live at least nine tenths of the last genome's life."
     ]
+    if bodies:
+        notes.append("Brain: in the last organism's body. Body: with the last organism's brain.")
     if islands:
         notes.append("Migrations: births of the line on another island than the parent's.")
     return Told(f"{name}: genomes of a line, born again in the same games", head, rows, notes)
+
+
+def _of_line(each: Any, islands: bool) -> tuple[str, ...]:
+    """Return the column of a line in the table."""
+    return (
+        f"organism {each.organism} of world {each.world}",
+        *((each.steps[-1].island, f"{each.migrations:,}") if islands else ()),
+        *(f"{each.generations:,}", f"{each.genomes:,}", f"{len(each.steps):,}"),
+        *(f"{each.steps[0].reborn:,.0f}", f"{each.steps[-1].reborn:,.0f}"),
+        _birth_text(each.good),
+        *(_birth_text(step) for step in each.good_parts.values()),
+        _step_text(each.largest),
+    )
 
 
 def compete(name: str, found: list[Any]) -> Told:

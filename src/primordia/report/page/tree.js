@@ -5,14 +5,15 @@ function treeSection(world, palette, chosen, show) {
   const some = tree.shown < tree.living ? `; ${whole(tree.shown)} of the living are shown, spread over the cells` : "";
   const about = `The ${whole(tree.living)} living organisms, and the ancestors at which their lines part${some}.`
     + " Time runs to the right, in births"
-    + (islandsOf(world).length ? "; the colour shows the island on which an organism lives." : "; strong lines last to the present.");
+    + (islandsOf(world).length ? "; the colour shows the island on which an organism lives."
+      : tree.traits ? "." : "; strong lines last to the present.");
   const drawing = element("div", { class: "tree", tabindex: 0, role: "group", "aria-label":
     "Phylogeny of the living. Keys: up and down choose a living organism, Enter shows this organism in the space-time picture." });
   const readout = element("p", { class: "readout", "aria-live": "polite" }, "\u00a0");
-  const state = { at: -1 };
+  const state = { at: -1, trait: -1 };
   const tellNode = (at) => {
     state.at = at;
-    readout.textContent = at < 0 ? "\u00a0" : nodeText(tree.nodes, at, islandsOf(world));
+    readout.textContent = at < 0 ? "\u00a0" : nodeText(tree.nodes, at, islandsOf(world)) + traitText(tree, tree.nodes[at]);
     markLine(drawing, tree.nodes, at);
   };
   const showNode = (at) => {
@@ -21,13 +22,15 @@ function treeSection(world, palette, chosen, show) {
   };
   const draw = () => {
     if (!drawing.clientWidth) return;
-    drawing.replaceChildren(drawnTree(world, palette, drawing.clientWidth, tellNode, showNode));
+    drawing.replaceChildren(drawnTree(world, palette, drawing.clientWidth, state.trait, tellNode, showNode));
     markLine(drawing, tree.nodes, state.at);
   };
   onWidth(drawing, draw);
   painters.add(draw);
   treeKeys(drawing, tree.nodes, state, tellNode, showNode);
-  return section("Phylogeny of the living", about, ...(world.islands ? [islandsKey(world.islands)] : []), drawing, readout,
+  const keys = world.islands ? [islandsKey(world.islands)] : [];
+  if (tree.traits) keys.push(traitControl(tree, state, draw));
+  return section("Phylogeny of the living", about, ...keys, drawing, readout,
     element("p", { class: "hint" }, "Move over a line to read its organism; click to see the organism in the space-time picture."));
 }
 
@@ -60,7 +63,7 @@ function treeKeys(drawing, nodes, state, tellNode, showNode) {
   });
 }
 
-function drawnTree(world, palette, width, tellNode, showNode) {
+function drawnTree(world, palette, width, trait, tellNode, showNode) {
   const { nodes, shown } = world.tree;
   const gap = Math.min(Math.max(420 / shown, 3), 14);
   const [left, right, top] = [4, 4, 24];
@@ -69,25 +72,31 @@ function drawnTree(world, palette, width, tellNode, showNode) {
   const y = (level) => top + (level + 0.5) * gap;
   const svg = shape("svg", { width, height, viewBox: `0 0 ${width} ${height}`, "aria-hidden": true });
   svg.append(...timeGrid(world, x, height, width));
-  const colours = inks(palette);
+  const colourOf = barColours(world, palette, trait);
   nodes.forEach((node, at) => {
     const bar = `M${x(node.start)} ${y(node.level)}H${Math.max(x(node.stop), x(node.start) + 1)}`;
     const rise = node.parent < 0 ? "" : `M${x(node.start)} ${y(nodes[node.parent].level)}V${y(node.level)}`;
-    const colour = barColour(world, node, colours);
+    const faint = world.islands && trait < 0 && !node.alive;
     const lines = { "data-node": at };
     svg.append(
       shape("path", { ...lines, class: "line", d: rise }),
-      shape("path", { ...lines, class: "bar", d: bar, stroke: colour, "stroke-opacity": world.islands && !node.alive ? 0.55 : null, "stroke-width": Math.max(Math.min(gap * 0.5, 5), 1.5) }),
+      shape("path", { ...lines, class: "bar", d: bar, stroke: colourOf(node), "stroke-opacity": faint ? 0.55 : null, "stroke-width": Math.max(Math.min(gap * 0.5, 5), 1.5) }),
       shape("path", { class: "hit", d: bar + rise, "stroke-width": gap, pointerenter: () => tellNode(at),
         click: () => showNode(at) }));
   });
   return svg;
 }
 
-// The colour of an organism's line if it is alive, or of its island.
-function barColour(world, node, colours) {
-  if (world.islands) return curveColour(world.islands[node.island].colour);
-  return node.alive ? css(colours[node.ink]) : variable("--soft");
+// The colour of each organism: of a trait, or of its island, or of its line if it is alive.
+function barColours(world, palette, trait) {
+  const { nodes, traits } = world.tree;
+  if (trait >= 0) {
+    const range = traitRange(nodes, trait);
+    return (node) => curveColour(traitColour(traits.scale, range, node.traits[trait]));
+  }
+  if (world.islands) return (node) => curveColour(world.islands[node.island].colour);
+  const colours = inks(palette);
+  return (node) => (node.alive ? css(colours[node.ink]) : variable("--soft"));
 }
 
 function timeGrid(world, x, height, width) {
