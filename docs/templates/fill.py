@@ -10,6 +10,7 @@ another figure than its table. A table is named by its folder below `experiments
 """
 
 import re
+import tomllib
 from collections.abc import Iterable, Sequence
 from functools import cache
 from pathlib import Path
@@ -210,6 +211,24 @@ def budget(name: str, task: str) -> str:
     return f"{int(rows(name).ticks.max()) * config.load(task).cells / 1e6:.2g}"
 
 
+def planned(name: str) -> str:
+    """Return the organism-ticks of a world of an experiment's file whose cells are always full, in
+    millions."""
+    folder, stem = name.split("/")
+    text = (ROOT / "experiments" / folder / f"{stem}.toml").read_text("utf-8")
+    file = tomllib.loads(text)
+    cells = file.get("cells") or config.load(file["task"]).cells
+    return f"{file['stop']['ticks'] * cells / 1e6:.2g}"
+
+
+def searched(name: str, method: str, way: str, outcome: str = "score") -> str:
+    """Return the median over seeds of what a search with a reward has found (`baselines.py`)."""
+    if not _path(f"{name}-baselines", "csv").exists():
+        return MISSING
+    found = rows(f"{name}-baselines").query("who == @method and way == @way")[outcome]
+    return Cell(spread_text(found)).median
+
+
 def chosen(habitat: str) -> dict[str, config.Config]:
     """Return the settings of the tasks that come with the package in a habitat, by task."""
     every = {task: config.load(task) for task in tasks()}
@@ -236,6 +255,8 @@ def pages() -> dict[Path, str]:
         sign_test=sign_test,
         ratio=ratio,
         budget=budget,
+        planned=planned,
+        searched=searched,
         worlds=worlds,
         seeds=seeds,
         seeds_of_games=seeds_of_games,
