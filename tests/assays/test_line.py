@@ -1,7 +1,6 @@
 """The genomes of a line of descent, born again."""
 
 from dataclasses import replace
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -14,12 +13,10 @@ from primordia.assays.line import Line, Step, _changed, line
 from primordia.assays.subjects import of_run
 from primordia.law.world import BirthCause
 from primordia.organism.organism import Organism
-from primordia.organism.playing.games import Players, lifespans_in_games
+from primordia.organism.playing.games import Players
 from primordia.random.wide import to_host
-from primordia.runs import loop
 from tests.assays.lives import COPY, FOUNDER, MUTANT
 from tests.assays.lives import lives as lives_of
-from tests.worlds import config
 
 
 def invented(*lives: float) -> Line:
@@ -55,30 +52,6 @@ def test_brain_and_body_may_be_good_from_different_steps() -> None:
     assert (told["brain_good_from"], told["body_good_from"]) == (6, 7)
     assert invented(1, 2).good_parts == {}
     assert "body_good_from" not in invented(1, 2).to_dict()
-
-
-def test_brains_and_bodies_of_a_line_live_apart(tmp_path: Path) -> None:
-    """Brains live in the last body, and the last brain lives in each body."""
-    body = {"scale": 0.5, "founder_scale": 0.0}
-    traits = {"pole-length": {"least": 0.1, "most": 10.0}}
-    settings = {"habitat": {"traits": traits}, "mutation": {"blocks": {"body": body}}}
-    loop.start(config(cells=16, stop={"ticks": 600}, **settings), tmp_path / "run")
-    poles = primordia.load(tmp_path / "run")
-    run, champion = poles.opened(), poles.oldest(0)
-    found = line(run, champion.id, games=1, ticks=300)
-    first, last = found.steps[0], found.steps[-1]
-    assert len(found.steps) > 1
-    assert last.brain == last.body == last.reborn
-    own, other = (poles.organism(each.organism).genome() for each in (first, last))
-    genes = run.layout.genes
-    assert (own[-genes:] != other[-genes:]).all(), "the line's body has changed"
-    players = of_run(run, [(champion.id, 0)]).players
-    for part, genome in (
-        ("brain", np.append(own[:-genes], other[-genes:])),
-        ("body", np.append(other[:-genes], own[-genes:])),
-    ):
-        lived = lifespans_in_games(players._replace(genomes=genome[None]), 1, 300)
-        assert getattr(first, part) == lived.mean(), part
 
 
 @pytest.fixture(scope="module")

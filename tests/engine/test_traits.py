@@ -8,6 +8,7 @@ import pytest
 
 import primordia
 from primordia.assays.ablate import _losses
+from primordia.assays.line import line
 from primordia.assays.subjects import of_run
 from primordia.figures import portraits, spacetime
 from primordia.figures.traits import draw
@@ -16,7 +17,7 @@ from primordia.history import traits as history
 from primordia.history.series import spaced
 from primordia.history.summary import summary
 from primordia.history.traits import EACH, course, factors_of
-from primordia.organism.playing.games import lifespans
+from primordia.organism.playing.games import lifespans, lifespans_in_games
 from primordia.organism.playing.players import players_of
 from primordia.organism.reliving.compare import relive
 from primordia.phylogeny.table import ids
@@ -136,6 +137,21 @@ def test_the_loss_of_an_inherited_body_has_its_name(run: Path) -> None:
     names = [loss.name for loss in _losses(of_run(Archive(run)), each_sense=False)]
     assert names[-1] == "inherited body"
     assert "output weights" in names
+
+
+def test_brains_and_bodies_of_a_line_live_apart(run: Path) -> None:
+    """Brains live in the last body, and the last brain lives in each body."""
+    loaded = primordia.load(run)
+    champion = loaded.oldest(1)
+    found = line(loaded.opened(), champion.id, 1, games=1, ticks=300)
+    first, last = found.steps[0], found.steps[-1]
+    assert last.brain == last.body == last.reborn
+    own, other = (loaded.organism(each.organism, 1).genome() for each in (first, last))
+    assert (own[-2:] != other[-2:]).all(), "the line's body has changed"
+    players = of_run(loaded.opened(), [(champion.id, 1)]).players.take(np.zeros(2, int))
+    genomes = np.array([np.append(own[:-2], other[-2:]), np.append(other[:-2], own[-2:])])
+    lived = lifespans_in_games(players._replace(genomes=genomes), 1, 300).mean(axis=1)
+    assert [first.brain, first.body] == lived.tolist()
 
 
 def test_traits_of_the_living_are_in_the_summary(run: Path) -> None:

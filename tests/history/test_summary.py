@@ -200,6 +200,8 @@ def test_the_break_even_is_given_in_units_that_all_worlds_have() -> None:
         for tick, second in ((0.5, None), (0.1, 9.0), (0.3, 6.0))
     ]
     assert summarised(each).splitlines()[1] == "  break-even: food of 0.1 to 0.5 a tick"
+    only_effort = world(break_even={"food_per_tick": 0, "food_per_second": 0})
+    assert "break-even" not in summarised([only_effort])
 
 
 def test_the_summary_has_a_line_for_each_island() -> None:

@@ -69,14 +69,18 @@ def _extinct(world: dict[str, Any]) -> str:
 
 
 def _break_even(worlds: list[dict[str, Any]]) -> list[str]:
-    """Return a line with the food that keeps an organism alive: the range over all worlds."""
-    amounts = []
+    """Return a line with the food that keeps an organism alive: the range over all worlds.
+
+    There is no line if living costs nothing without effort.
+    """
+    amounts, costs = [], False
     for unit in ("tick", "second"):
         food = [world.get("break_even", {}).get(f"food_per_{unit}") for world in worlds]
         if None not in food:
             low, high = f"{min(food):.3g}", f"{max(food):.3g}"
             amounts.append(f"{low if low == high else f'{low} to {high}'} a {unit}")
-    return [f"  break-even: food of {', or '.join(amounts)}"] if amounts else []
+            costs |= max(food) > 0
+    return [f"  break-even: food of {', or '.join(amounts)}"] if costs else []
 
 
 def _too_few_copies(worlds: list[dict[str, Any]]) -> list[str]:
