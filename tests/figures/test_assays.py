@@ -231,3 +231,15 @@ def test_a_line_is_drawn_to_its_last_generation_with_both_lives_of_each_genome()
         assert key(axes) == {
             "born again": style.BLUE, "as recorded": style.ORANGE, "as good from": style.SOFT
         }  # fmt: skip
+
+
+def test_brains_and_bodies_of_a_line_are_drawn_apart() -> None:
+    steps = [
+        Step(n, 10 * n, 7 * n, "mutant", 4, 50, brain=brain, body=body)
+        for n, (brain, body) in enumerate(((0, 30), (20, 40), (50, 50)))
+    ]
+    (axes,) = axes_of(assays.line, [Line(20, 0, 2, 3, steps)])
+    assert points(axes, style.GREEN) == [(0, 1), (1, 20), (2, 50)]
+    assert points(axes, style.VERMILION) == [(0, 30), (1, 40), (2, 50)]
+    assert key(axes)["body with the last brain"] == style.VERMILION
+    assert key(axes)["brain in the last body"] == style.GREEN
