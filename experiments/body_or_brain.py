@@ -52,10 +52,10 @@ def rows_of(run: Records) -> list[Row]:
     for world in range(run.config.seeds):
         champion = int(run.lives.id[oldest(run, world)])
         own = line(run, champion, world, games=GAMES, ticks=TICKS)
-        first, last = own.steps[0], own.steps[-1]
-        spans = first.reborn, first.brain, first.body, last.reborn
+        lived = pd.DataFrame([step.to_dict() for step in own.steps])
+        spans = [*lived.loc[0, ["reborn", "brain", "body"]], lived["reborn"].iloc[-1]]
         row: Row = {"seed": int(run.world_seeds[world])}
-        row |= {name: round(span or 0, 1) for name, span in zip(LIVES, spans, strict=True)}
+        row |= {name: round(float(span), 1) for name, span in zip(LIVES, spans, strict=True)}
         good = {part: step.organism for part, step in own.good_parts.items()}
         found.append({**row, BRAIN: good["brain"], BODY: good["body"]})
     return found

@@ -197,7 +197,7 @@ def test_the_phylogeny_is_coloured_by_a_trait(torus_page: Path, page: Page) -> N
         "window.made = { traits: { names: ['leg', 'arm'], scale: ['#101010', '#202020', '#303030'] },"
         " nodes: [[1, 0.5], [1, 1], [1, 3], [1, 8]].map((traits) => ({ traits })) };"
         "window.state = { trait: -1 }; window.painted = 0;"
-        "document.body.append(traitControl(made, state, () => { painted += 1; }))"
+        "document.body.append(traitControl(made, 'island', state, () => { painted += 1; }))"
     )
     choose = "const s = document.getElementById('trait'); s.value = arguments[0];"
     choose += "s.dispatchEvent(new Event('change')); return [state.trait, painted]"
@@ -214,6 +214,38 @@ def test_the_phylogeny_is_coloured_by_a_trait(torus_page: Path, page: Page) -> N
     assert page.script(choose, "-1") == [-1, 2]
     assert page.text(".scale") == ""
     assert page.script("return traitText({}, {})") == ""
+
+
+def test_a_phylogeny_with_traits_is_drawn_in_their_colours(torus_page: Path, page: Page) -> None:
+    """A trait is chosen in the section of a world to whose phylogeny traits have been added."""
+    page.open_file(torus_page)
+    added = page.driver.execute_async_script(
+        "const done = arguments[arguments.length - 1];"
+        "const content = JSON.parse(document.getElementById('content').textContent);"
+        "readWorld(content.worlds[0]).then((world) => {"
+        "  world.tree.nodes.forEach((node, at) => { node.traits = [1 + at]; });"
+        "  world.tree.traits = { names: ['leg'], scale: ['#0072b2', '#d55e00'] };"
+        "  document.querySelector('.tree').closest('section').replaceWith("
+        "    treeSection(world, content.palette, null, () => {}));"
+        "  done(world.tree.nodes.length); });"
+    )
+    page.wait_for_figures()
+    strokes = (
+        "return [...document.querySelectorAll('.tree .bar')].map((b) => b.getAttribute('stroke'))"
+    )
+    before = page.script(strokes)
+    options = "return [...document.querySelectorAll('#trait option')].map((each) => each.text)"
+    assert page.script(options) == ["line of descent", "leg"]
+    page.script(
+        "const s = document.getElementById('trait'); s.value = 0; s.dispatchEvent(new Event('change'))"
+    )
+    least, most = page.script("return ['#0072b2', '#d55e00'].map(curveColour)")
+    after = page.script(strokes)
+    assert len(after) == added
+    assert (after[0], after[-1]) == (least, most)
+    assert set(after) == {least, most} != set(before)
+    page.keys(page.one(".tree"), Keys.ARROW_DOWN)
+    assert ", leg x " in page.text(".tree + .readout")
 
 
 def test_the_phylogeny_is_drawn_over_births_and_keys_walk_through_its_living(

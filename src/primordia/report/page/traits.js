@@ -1,13 +1,16 @@
 // Colours of the phylogeny by a trait of bodies, from the smallest to the largest factor.
 
-// A control with the names of the traits, and the key of the chosen one; `paint` is called after a choice.
-function traitControl({ traits, nodes }, state, paint) {
+// A control with the name of the usual colours and the names of the traits, and the key of the chosen trait;
+// `paint` is called after a choice.
+function traitControl({ traits, nodes }, usual, state, paint) {
   const select = element("select", { id: "trait" },
-    ...["line of descent", ...traits.names].map((name, at) => element("option", { value: at - 1 }, name)));
+    ...[usual, ...traits.names].map((name, at) => element("option", { value: at - 1 }, name)));
   const key = element("span", { class: "scale" });
+  const fill = () => key.replaceChildren(...(state.trait < 0 ? [] : traitKey(traits.scale, traitRange(nodes, state.trait))));
+  painters.add(fill);
   select.addEventListener("change", () => {
     state.trait = Number(select.value);
-    key.replaceChildren(...(state.trait < 0 ? [] : traitKey(traits.scale, traitRange(nodes, state.trait))));
+    fill();
     paint();
   });
   return element("div", { class: "bar" }, element("label", { for: "trait" }, "Colour"), select, key);
@@ -15,7 +18,7 @@ function traitControl({ traits, nodes }, state, paint) {
 
 function traitKey(scale, [least, most]) {
   const bar = element("i", {});
-  bar.style.background = `linear-gradient(to right, ${scale.join(", ")})`;
+  bar.style.background = `linear-gradient(to right, ${scale.map(curveColour).join(", ")})`;
   return [`x ${least.toFixed(2)}`, bar, `x ${most.toFixed(2)}`];
 }
 

@@ -29,7 +29,7 @@ function treeSection(world, palette, chosen, show) {
   painters.add(draw);
   treeKeys(drawing, tree.nodes, state, tellNode, showNode);
   const keys = world.islands ? [islandsKey(world.islands)] : [];
-  if (tree.traits) keys.push(traitControl(tree, state, draw));
+  if (tree.traits) keys.push(traitControl(tree, world.islands ? "island" : "line of descent", state, draw));
   return section("Phylogeny of the living", about, ...keys, drawing, readout,
     element("p", { class: "hint" }, "Move over a line to read its organism; click to see the organism in the space-time picture."));
 }
