@@ -236,6 +236,42 @@ def test_a_robot_is_drawn_with_its_own_model(
     np.testing.assert_allclose(drawn.geom_size[0, 0], 0.2, rtol=1e-6)
 
 
+JUMPER = """<mujoco><worldbody><geom name="floor" type="plane" size="5 5 0.1"/>
+<body name="trunk" pos="0 0 1">{joint}<geom name="trunk" size="0.1"/>
+<geom name="leg" type="capsule" size="0.05 0.3" pos="0 0 -0.4"/>
+<body name="arm"><joint name="arm"/><geom size="0.02" pos="0.2 0 0"/></body></body></worldbody>
+<actuator><motor name="push" joint="arm"/></actuator></mujoco>"""
+
+
+@pytest.mark.parametrize(
+    ("joint", "height"),
+    [
+        ("<freejoint/>", 1.7),
+        ('<joint type="slide" axis="0 0 1"/>', 1.7),
+        ('<joint type="slide" axis="1 0 0"/>', 1.0),
+        ('<joint type="hinge" axis="0 1 0"/>', 1.0),
+    ],
+)
+def test_a_robot_with_longer_legs_is_born_higher(tmp_path: Path, joint: str, height: float) -> None:
+    """So that its feet are not in the ground; a robot that cannot move up stays where it is."""
+    pytest.importorskip("mujoco")
+    (tmp_path / "jumper.xml").write_text(JUMPER.format(joint=joint))
+    own = {
+        "name": "mujoco",
+        "file": str(tmp_path / "jumper.xml"),
+        "adjustable": {"leg": ["geom.leg.size[1]", "geom.leg.pos"]},
+        "traits": {"leg": {"least": 0.1, "most": 10.0}},
+        "senses": ['xpos["trunk"][2]'],
+    }
+    habitat: Any = validated({"task": "jumper", "habitat": own}, "jumper").build_habitat()
+    habitat.open(2)
+    words = np.zeros((2, habitat.words), np.uint32)
+    words[1, :1] = np.ones(1, np.float32).view(np.uint32)
+    # The leg ends 0.75 m below the trunk of the first body, and 1.45 m below that of the second.
+    expected = [[1.0], [height]]
+    np.testing.assert_allclose(habitat.reset(np.arange(2), words), expected, rtol=1e-6)
+
+
 def test_a_body_that_mujoco_refuses_fails_with_a_reason(tmp_path: Path) -> None:
     """Its neighbour lives on, and so does the next body of the cell."""
     habitat = begun(boxes(tmp_path, SIZE), [[-16, 0], [0, 0]])

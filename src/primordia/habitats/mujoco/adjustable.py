@@ -2,17 +2,20 @@
 
 A body whose parameters differ has a model of its own, which MuJoCo compiles from its editable form
 (`MjSpec`). So MuJoCo derives masses, inertias and bounds from new lengths, and refuses what is no body.
+
+A robot that can move up and down is born as far above the ground as the usual one, however long its legs.
 """
 
 import re
 from collections.abc import Mapping
 from functools import partial
+from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from primordia.habitats.mujoco import physics
-from primordia.habitats.mujoco.simulator import compiled, editable, finished
+from primordia.habitats.mujoco.simulator import ROOT, compiled, editable, finished, package
 from primordia.settings.tables import did_you_mean
 
 KINDS = {
@@ -24,6 +27,8 @@ KINDS = {
     "tendon": "tendons",
 }
 """Kinds of elements, and the name of the list of all elements of a kind in MjSpec."""
+FAR = 1000.0
+"""Distance in m above which robots are not told apart."""
 TARGET = re.compile(rf"({'|'.join(KINDS)})\.(.+)\.([a-z_]+)(?:\[(\d)\])?")
 
 
@@ -64,6 +69,7 @@ class Adjustable:
         """
         self._spec = editable(file, forces, textures)
         self._finish = partial(finished, timestep=timestep)
+        self._clearance = _clearance(compiled(self._spec))
         self._targets = [[_target(self._spec, n, each) for each in own] for n, own in table.items()]
 
     def model(self, factors: tuple[float, ...]) -> Any:
@@ -82,8 +88,45 @@ class Adjustable:
                 scaled[slice(None) if place is None else place] *= factor
                 setattr(_element(self._spec, kind, element), attribute, _as_set(scaled))
         model = self._finish(compiled(self._spec))
+        _lift(model, self._clearance - _clearance(model))
         physics.scale_model(model, factors[:own])
         return model
+
+
+def _clearance(model: Any) -> float:
+    """Return the distance in m of the robot from the world's geoms in the pose at birth.
+
+    It is negative in the ground, and 0 if the robot cannot move up and down, or the world is empty.
+    """
+    mujoco, state = package(), package().MjData(model)
+    mujoco.mj_kinematics(model, state)
+    static = model.geom_bodyid == 0
+    pairs = product(np.flatnonzero(static).tolist(), np.flatnonzero(~static).tolist())
+    touching = [pair for pair in pairs if _touch(model, *pair)]
+    if not touching or not _moves_vertically(model):
+        return 0.0
+    return min(mujoco.mj_geomDistance(model, state, *pair, FAR, None) for pair in touching)
+
+
+def _touch(model: Any, one: int, other: int) -> bool:
+    """Return whether two geoms collide, by their `contype` and `conaffinity`."""
+    kind, accepts = model.geom_contype, model.geom_conaffinity
+    return bool(kind[one] & accepts[other] or kind[other] & accepts[one])
+
+
+def _moves_vertically(model: Any) -> bool:
+    """Return whether a joint of the robot's first body lets it rise."""
+    kinds, joint = model.jnt_type, package().mjtJoint
+    slides_up = (kinds == joint.mjJNT_SLIDE) & (model.jnt_axis[:, 2] != 0)
+    rises = slides_up | (kinds == joint.mjJNT_FREE)
+    return bool(np.any(rises & (model.jnt_bodyid == ROOT)))
+
+
+def _lift(model: Any, metres: float) -> None:
+    """Raise the place in which the robot is born."""
+    model.body_pos[ROOT, 2] += metres
+    if model.jnt_type[0] == package().mjtJoint.mjJNT_FREE:
+        model.qpos0[2] += metres
 
 
 def _as_set(value: np.ndarray) -> Any:
