@@ -47,9 +47,10 @@ class Keys(JaxHabitat):
         return jnp.ones((len(bodies), self.senses_size), jnp.float32) * bodies[:, None]
 
     def step(self, bodies: Array, action: Array) -> tuple[Array, Outcome]:
-        return action, Outcome(
-            action == 0, None if self.senses_size == 1 else action * jnp.float32(2)
-        )
+        if self.senses_size == 1:
+            return action, Outcome(action == 0)
+        twice, half = action * jnp.float32(2), jnp.full(action.shape, 0.5, jnp.float32)
+        return action, Outcome(action == 0, twice, capacity=half)
 
 
 def test_a_button_is_one_choice_on_all_islands_and_nothing_where_it_is_missing() -> None:
@@ -67,6 +68,7 @@ def test_a_button_is_one_choice_on_all_islands_and_nothing_where_it_is_missing()
         own = [west[button]] * 2 + [east[button]] * 3
         assert outcome.fatal.tolist() == [each == 0 for each in own]
         assert outcome.food.tolist() == [0.0] * 2 + [2.0 * east[button]] * 3
+        assert outcome.capacity.tolist() == [1.0] * 2 + [0.5] * 3
         senses = np.asarray(both.sense(after))
         assert senses[:2, 1:].sum() == 0, "the senses that an island lacks are 0"
         assert senses[:, 0].tolist() == own

@@ -171,7 +171,7 @@ WALKER = """<mujoco><worldbody><body name="box"><joint name="x" type="slide" axi
 <actuator><motor name="push" joint="x" gear="2"/></actuator></mujoco>"""
 
 
-def boxes(folder: Path, adjustable: Any, traits: Any = None, **changes: Any) -> Any:
+def boxes(folder: Path, adjustable: Any, traits: Any = None, **own: Any) -> Any:
     """Return boxes on a line with parameters of a user's own, which are traits; they eat their mass."""
     pytest.importorskip("mujoco")
     (folder / "box.xml").write_text(WALKER)
@@ -182,8 +182,9 @@ def boxes(folder: Path, adjustable: Any, traits: Any = None, **changes: Any) -> 
         "adjustable": adjustable,
         "food": "mass",
         "traits": dict.fromkeys(adjustable, wide) if traits is None else traits,
+        **own,
     }
-    return validated({"task": "box", "habitat": habitat, **changes}, "box").build_habitat()
+    return validated({"task": "box", "habitat": habitat}, "box").build_habitat()
 
 
 SIZE = {"size": ["geom.box.size"], "strength": ["actuator.push.gear[0]"]}
@@ -218,9 +219,10 @@ def test_a_robot_has_the_size_and_strength_of_its_genes(tmp_path: Path) -> None:
 
 def test_mass_is_that_of_the_body_that_evolves(tmp_path: Path) -> None:
     """Also if it is one of MuJoCo's own parameters."""
-    habitat = begun(boxes(tmp_path, {}, {"mass": {"least": 0.5, "most": 2.0}}), [[0], [1]])
-    outcome = habitat.step(np.zeros((2, 1), np.float32), np.ones(2, bool))[1]
+    made = boxes(tmp_path, {}, {"mass": {"least": 0.5, "most": 2.0}}, capacity="10 * mass")
+    outcome = begun(made, [[0], [1]]).step(np.zeros((2, 1), np.float32), np.ones(2, bool))[1]
     np.testing.assert_allclose(outcome.food[1] / outcome.food[0], 2, rtol=1e-5)
+    np.testing.assert_array_equal(outcome.capacity, np.float32(10) * outcome.food)
 
 
 def test_a_robot_is_drawn_with_its_own_model(

@@ -39,7 +39,8 @@ JUDGE = jax.jit(life.judge, static_argnums=0)
 JUDGE_WORLD = jax.jit(tick.judge, static_argnums=0)
 KEYS = jax.jit(tick.keys_of)
 NOISE = jax.jit(noise_index, static_argnums=2)
-REASONS = ("expired", "hungry", "fatal", "thought", "body", "food", "effort", "reported")
+FAULTS = ("thought", "body", "food", "effort", "capacity", "reported")
+REASONS = ("expired", "hungry", "fatal", *FAULTS)
 CASES = np.array(list(product([False, True], repeat=len(REASONS))))
 
 
@@ -53,6 +54,7 @@ def judged(hungry: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         effort=np.where(of["effort"], np.nan, 0.0).astype(np.float32),
         expired=of["expired"],
         fault=of["reported"],
+        capacity=np.where(of["capacity"], np.nan, 1.0).astype(np.float32),
     )
     bodies = np.where(of["body"], np.nan, 0.0).astype(np.float32)[:, None]
     vitals, cause = JUDGE(
@@ -68,7 +70,7 @@ def test_of_all_reasons_to_die_the_gravest_is_the_cause(hungry: bool) -> None:
     expected = []
     for row in CASES:
         has = dict(zip(REASONS, row, strict=True))
-        if any(has[why] for why in ("thought", "body", "food", "effort", "reported")):
+        if any(has[why] for why in FAULTS):
             expected.append(Cause.FAULT)
         elif has["fatal"]:
             expected.append(Cause.FATAL)

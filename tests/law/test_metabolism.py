@@ -123,6 +123,15 @@ def test_food_and_effort_that_a_habitat_lacks_change_no_energy() -> None:
     assert metabolise(energy, None, some, rates).tolist() == [7 * ONE, 18 * ONE]
 
 
+def test_a_body_holds_its_share_of_the_cap() -> None:
+    rates = Rates(*(jnp.full(3, value, jnp.float32) for value in (9, 1, 1, 1, 20)))
+    energy, share = jnp.full(3, 16 * ONE, jnp.int32), jnp.array([0.5, 1, 2], jnp.float32)
+    food = jnp.full(3, 100, jnp.float32)
+    held = [10 * ONE, 20 * ONE, 40 * ONE]
+    assert metabolise(energy, food, None, rates, share).tolist() == held
+    assert metabolise(energy, None, None, rates, share).tolist() == [10 * ONE, 15 * ONE, 15 * ONE]
+
+
 def test_a_store_is_drained_even_if_float32_could_not_show_it() -> None:
     rates = Rates(*(jnp.full(1, value, jnp.float32) for value in (1e6, 1 / 1024, 0, 0, 1e6)))
     energy = to_fixed_point(rates.store)

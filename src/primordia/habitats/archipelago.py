@@ -246,22 +246,22 @@ def joined(parts: Sequence[Any], sizes: tuple[int, ...]) -> Any:
 
 
 def _outcome(outcomes: Sequence[Outcome], sizes: tuple[int, ...]) -> Outcome:
-    """Join the outcomes of islands; what only some islands report is 0 or False on the others."""
+    """Join the outcomes of islands; what one does not report is 0 or False, and 1 for a capacity."""
 
-    def all_of(*results: Any) -> Any:
+    def all_of(name: str, *results: Any) -> Any:
         if all(each is None for each in results):
             return None
         like = next(each for each in results if each is not None)
         counts = [len(outcome.fatal) for outcome in outcomes]
         filled = [
-            np.zeros(count, like.dtype) if each is None else each
+            np.full(count, name == "capacity", like.dtype) if each is None else each
             for each, count in zip(results, counts, strict=True)
         ]
         return joined(
             filled if isinstance(like, np.ndarray) else [*map(jnp.asarray, filled)], sizes
         )
 
-    return Outcome(*map(all_of, *outcomes))
+    return Outcome(*map(all_of, Outcome._fields, *outcomes))
 
 
 def archipelago(habitats: Sequence[AnyHabitat], islands: Islands) -> AnyHabitat:

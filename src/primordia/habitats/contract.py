@@ -56,6 +56,8 @@ class Outcome(NamedTuple):
     """bool (N,): the habitat's own time limit ends the life"""
     fault: "Array | None" = None
     """bool (N,): the body's simulation has failed; the law itself detects NaN and infinity"""
+    capacity: "Array | None" = None
+    """float32 (N,): how much energy the body holds at most, as a share of `metabolism.cap`"""
 
 
 Stepped: TypeAlias = tuple[np.ndarray, Outcome]

@@ -121,7 +121,7 @@ def judge(
     """
     energy, eaten = vitals
     if law.metabolism is not None:
-        energy = metabolise(energy, outcome.food, outcome.effort, rates)
+        energy = metabolise(energy, outcome.food, outcome.effort, rates, outcome.capacity)
         if spent is not None:
             energy = add(energy, -to_fixed_point(spent))
     if outcome.food is not None:
@@ -161,6 +161,6 @@ def try_to_copy(
 def has_failed(bodies: Bodies, outcome: Outcome) -> Array:
     """Return which bodies failed, bool (N,): the habitat reports it, or a number is not finite."""
     failed = not_finite(bodies)
-    for number in (outcome.food, outcome.effort):
+    for number in (outcome.food, outcome.effort, outcome.capacity):
         failed = failed if number is None else failed | ~jnp.isfinite(number)
     return failed if outcome.fault is None else failed | outcome.fault

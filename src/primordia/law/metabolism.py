@@ -25,7 +25,8 @@ class Metabolism(Settings):
     """The cost of living and the gain from food; an organism starves when its energy reaches 0.
 
     Schmidgall & Hays 2021, "Foraging". Each tick: energy - drain - effort_cost x effort + gain x
-    food, at most cap.
+    food, at most cap
+    x capacity, where food, effort and capacity are the habitat's.
     """
 
     store: Rate = Field(100.0, gt=0, le=1e6, description="energy at birth")
@@ -74,11 +75,21 @@ class Rates(NamedTuple):
         return cls._make([*own, climate.get("replication.price")])
 
 
-def metabolise(energy: Array, food: Array | None, effort: Array | None, rates: Rates) -> Array:
-    """Return the energy of organisms after one tick, int32 (N,); an organism starves at 0 or less."""
+def metabolise(
+    energy: Array,
+    food: Array | None,
+    effort: Array | None,
+    rates: Rates,
+    capacity: Array | None = None,
+) -> Array:
+    """Return the energy of organisms after one tick, int32 (N,); an organism starves at 0 or less.
+
+    `Outcome` describes food, effort and capacity.
+    """
     change = -to_fixed_point(rates.drain)
     if effort is not None:
         change = add(change, -to_fixed_point(rates.effort_cost * effort))
     if food is not None:
         change = add(change, to_fixed_point(rates.gain * food))
-    return jnp.minimum(add(energy, change), to_fixed_point(rates.cap))
+    cap = rates.cap if capacity is None else rates.cap * capacity
+    return jnp.minimum(add(energy, change), to_fixed_point(cap))

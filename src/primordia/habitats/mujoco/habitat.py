@@ -65,6 +65,9 @@ class MuJoCo(HostHabitat, Settings):
     fatal: str = Field("", description='condition that ends a life; "": no condition ends it')
     food: str = Field("0", description="amount gathered in a tick")
     effort: str = Field("0", description="amount exerted in a tick")
+    capacity: str = Field(
+        "", description="""energy that a body holds at most, as a share of metabolism.cap; "": 1"""
+    )
     target: Target | None = Field(None, description="an object that the robot must reach")
     adjustable: dict[str, Annotated[tuple[str, ...], Field(strict=False)]] = Field(
         {},
@@ -127,22 +130,21 @@ class MuJoCo(HostHabitat, Settings):
         return [conditions.parse(text, "numbers", self._names) for text in self.senses]
 
     @cached_property
-    def _fatal_condition(self) -> Expression | None:
-        return conditions.parse(self.fatal, "condition", self._names) if self.fatal else None
-
-    @cached_property
-    def _food_amount(self) -> Expression:
-        return conditions.parse(self.food, "amount", self._names)
-
-    @cached_property
-    def _effort_amount(self) -> Expression:
-        return conditions.parse(self.effort, "amount", self._names)
+    def _results(self) -> dict[str, Expression]:
+        """The expressions of the results of a tick, by their name in `Outcome`."""
+        texts = {"food": self.food, "effort": self.effort}
+        texts |= {"capacity": self.capacity} if self.capacity else {}
+        results = {
+            name: conditions.parse(each, "amount", self._names) for name, each in texts.items()
+        }
+        if self.fatal:
+            results["fatal"] = conditions.parse(self.fatal, "condition", self._names)
+        return results
 
     @cached_property
     def _observed(self) -> frozenset[str]:
         """Names of the observables that the settings use."""
-        expressions = [*self._sense_expressions, self._food_amount, self._effort_amount]
-        expressions += [self._fatal_condition] if self._fatal_condition else []
+        expressions = [*self._sense_expressions, *self._results.values()]
         observed = frozenset().union(*(expression.names for expression in expressions))
         return observed | {"reached"} if self.target else observed
 
@@ -259,12 +261,11 @@ class MuJoCo(HostHabitat, Settings):
 
     def _judge(self, values: dict[str, Any], fault: Any) -> Outcome:
         """Return the outcome of a tick, from the values of the observables after it."""
-        count, condition = len(fault), self._fatal_condition
-        none: Any = np.zeros(count, bool)
-        fatal = condition.of_all(values, count, bool) if condition else none
-        food = self._food_amount.of_all(values, count, np.float32)
-        effort = self._effort_amount.of_all(values, count, np.float32)
-        return Outcome(fatal, food, effort, fault=fault)
+        results: dict[str, Any] = {"fatal": np.zeros(len(fault), bool), "fault": fault}
+        for name, expression in self._results.items():
+            dtype = bool if name == "fatal" else np.float32
+            results[name] = expression.of_all(values, len(fault), dtype)
+        return Outcome(**results)
 
     def _observe(self, before: dict[str, np.ndarray]) -> dict[str, Any]:
         """Return the present values of the observables, given the positions before the tick."""
