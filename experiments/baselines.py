@@ -14,11 +14,14 @@ and CSV; if the experiment's own games are there, its organisms stand in the sam
 
     python experiments/baselines.py --seed 0 --seeds 5 experiments/atari/pong.toml
 
-prints the same for other seeds and writes nothing. The strategy's settings below were chosen in a few
-trials on seeds below 1,000 of MinAtar. CartPole's table, which names its settings, is older.
+prints the same for other seeds and writes no table. Each search is kept in `runs/NAME-baselines`, so an
+interrupted command goes on where it was; delete the folder after changes here. The strategy's settings
+below were chosen in a few trials on seeds below 1,000 of MinAtar. CartPole's table, which names its
+settings, is older.
 """
 
 import argparse
+import json
 import os
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
@@ -39,6 +42,7 @@ from primordia.comparison.tables import spread_text
 from primordia.config import Config
 from primordia.experiments.file import read
 from primordia.experiments.results import table
+from primordia.files import write_text
 from primordia.law.genesis import initial_climate
 from primordia.law.metabolism import Rates
 from primordia.organism.playing.evaluation import judged
@@ -168,6 +172,15 @@ class Trial(NamedTuple):
 
 
 def rows_of(trial: Trial) -> list[dict[str, Any]]:
+    """Return what a search found, a row for each way of playing; it is kept for the next time."""
+    kept = Path("runs", f"{trial.file.stem}-baselines", f"{trial.method} {trial.seed}.json")
+    if not kept.exists():
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        write_text(kept, json.dumps(searched(trial)))
+    return json.loads(kept.read_text(encoding="utf-8"))
+
+
+def searched(trial: Trial) -> list[dict[str, Any]]:
     """Search, let the chosen genome play, and return a row for each way of playing."""
     device.prepare()
     config = reference(trial.file)
