@@ -109,7 +109,7 @@ def test_all_lives_are_played_to_their_ends_side_by_side(
     for body, past in enumerate(pasts):
         assert ages(past) == list(range(ENDS[body] + 1))
         assert {row[0][0] for row in past} == {float(WORD[body] % 1024)}
-        place = {"fatal": 1, "expired": 4, "fault": 5}[ends]
+        place = 1 + Outcome._fields.index(ends)
         assert [bool(row[place]) for row in past[1:]] == [
             bool(DIES[body]) and age == ENDS[body] for age in range(1, ENDS[body] + 1)
         ]

@@ -52,12 +52,12 @@ class Outcome(NamedTuple):
     """float32 (N,): food gathered, in the task's unit (metres, points, targets)"""
     effort: "Array | None" = None
     """float32 (N,): effort exerted, in the habitat's unit"""
+    capacity: "Array | None" = None
+    """float32 (N,): how much energy the body holds at most, as a share of `metabolism.cap`"""
     expired: "Array | None" = None
     """bool (N,): the habitat's own time limit ends the life"""
     fault: "Array | None" = None
     """bool (N,): the body's simulation has failed; the law itself detects NaN and infinity"""
-    capacity: "Array | None" = None
-    """float32 (N,): how much energy the body holds at most, as a share of `metabolism.cap`"""
 
 
 Stepped: TypeAlias = tuple[np.ndarray, Outcome]

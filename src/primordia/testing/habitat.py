@@ -127,7 +127,7 @@ def _pasts(looped: tuple[Array, Array, Outcome]) -> list[Past]:
     for body in range(ALL):
         past: Past = [(first[body],)]
         for tick in range(TICKS):
-            reported = outcomes[:4]  # without faults, which the law detects in a loop
+            reported = outcomes[:5]  # without faults, which the law detects in a loop
             outcome = [None if each is None else each[tick, body] for each in reported]
             past.append((senses[tick, body], *outcome))
         pasts.append(past)
