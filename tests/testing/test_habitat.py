@@ -130,7 +130,10 @@ JAX_FAULTS: list[tuple[Any, str]] = [
         "body .* has a different life at age 1 among 1 bodies than among 32; .* elementwise",
     ),
     (Moody(), "when it is traced again, so it draws from more than `words`"),
-    *((Changeable(result=each), "when it is traced again") for each in ("effort", "capacity", "expired")),
+    *(
+        (Changeable(result=each), "when it is traced again")
+        for each in ("effort", "capacity", "expired")
+    ),
     (Sloppy(), r"gives outcome.food as float32 \(32, 1\); the contract says float32 \(32,\)"),
     (Wide(), r"gives senses as float32 \(32, 2\); the contract says float32 \(32, 3\)"),
     (Melting(), "gives bodies after a step as float16"),

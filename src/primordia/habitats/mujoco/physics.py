@@ -47,8 +47,11 @@ def scale(model: Any, batch: Any, cells: np.ndarray, factors: np.ndarray) -> Non
         batch.set_const(cells)
 
 
-def scale_model(model: Any, factors: Sequence[float]) -> None:
-    """Multiply the parameters of one model by factors, (P,), of the parameters `offered`."""
+def scale_model(model: Any, state: Any, factors: Sequence[float]) -> None:
+    """Multiply the parameters of one model by factors, (P,), of the parameters `offered`.
+
+    `state` is an MjData of the model, which is overwritten.
+    """
     for name, factor in zip(offered(model), factors, strict=True):
         for field in FIELDS[name]:
             value = _value(model, field)
@@ -56,7 +59,7 @@ def scale_model(model: Any, factors: Sequence[float]) -> None:
                 value[:] *= factor
             else:
                 setattr(model.opt, field.removeprefix("opt."), value * factor)
-    package().mj_setConst(model, package().MjData(model))
+    package().mj_setConst(model, state)
 
 
 def _value(model: Any, field: str) -> Any:
