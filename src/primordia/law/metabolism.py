@@ -25,8 +25,7 @@ class Metabolism(Settings):
     """The cost of living and the gain from food; an organism starves when its energy reaches 0.
 
     Schmidgall & Hays 2021, "Foraging". Each tick: energy - drain - effort_cost x effort + gain x
-    food, at most cap
-    x capacity, where food, effort and capacity are the habitat's.
+    food, at most cap x capacity, where food, effort and capacity are the habitat's.
     """
 
     store: Rate = Field(100.0, gt=0, le=1e6, description="energy at birth")
