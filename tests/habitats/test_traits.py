@@ -16,6 +16,7 @@ from primordia.envs import LifeEnv
 from primordia.errors import InputError
 from primordia.habitats.cartpole.habitat import CartPole
 from primordia.habitats.traits import Traits, with_traits
+from tests.commands import HERE
 from tests.habitats.test_parameters import HeldPoles
 
 TRAITS = Traits.of(
@@ -272,6 +273,20 @@ def test_a_robot_with_longer_legs_is_born_higher(tmp_path: Path, joint: str, hei
     # The leg ends 0.75 m below the trunk of the first body, and 1.45 m below that of the second.
     expected = [[1.0], [height]]
     np.testing.assert_allclose(habitat.reset(np.arange(2), words), expected, rtol=1e-6)
+
+
+def test_the_hopper_with_frames_at_its_joints_moves_as_gymnasiums() -> None:
+    mujoco = pytest.importorskip("mujoco")
+    assets = Path(pytest.importorskip("gymnasium.envs.mujoco").__file__).parent / "assets"
+    files = assets / "hopper.xml", HERE / "experiments" / "bodies" / "hopper.xml"
+    models = [mujoco.MjModel.from_xml_path(str(file)) for file in files]
+    one, other = (mujoco.MjData(model) for model in models)
+    for controls in np.random.default_rng(0).uniform(-1, 1, (200, 3)):
+        one.ctrl[:] = other.ctrl[:] = controls
+        for model, state in zip(models, (one, other), strict=True):
+            mujoco.mj_step(model, state)
+    assert abs(one.qpos - (0, 1.25, 0, 0, 0, 0)).min() > 1e-4, "all joints have moved"
+    np.testing.assert_allclose(other.qpos, one.qpos, atol=1e-9)
 
 
 def test_a_body_that_mujoco_refuses_fails_with_a_reason(tmp_path: Path) -> None:

@@ -105,6 +105,15 @@ def test_food_is_counted_with_a_metabolism_and_without() -> None:
         assert after.energy.tolist() == [energy * ONE for energy in energies]
 
 
+def test_a_body_holds_no_more_energy_than_its_share_of_the_cap() -> None:
+    vitals = Vitals(np.full(2, 5 * ONE, np.int32), np.zeros(2, np.int32))
+    outcome = Outcome(np.zeros(2, bool), capacity=np.array([0.5, 1.0], np.float32))
+    rates = RATES._replace(cap=np.float32(6))
+    for hungry, energies in ((True, [3, 4]), (False, [5, 5])):
+        after, _ = JUDGE(meadow_law(hungry), vitals, np.zeros(2, bool), np.zeros(2), outcome, rates)
+        assert after.energy.tolist() == [energy * ONE for energy in energies]
+
+
 NUMBERS = Continuous(3)
 
 

@@ -27,8 +27,9 @@ KINDS = {
 }
 """Kinds of elements, and the name of the list of all elements of a kind in MjSpec."""
 Pairs: TypeAlias = list[list[int]]
+"""Numbers of two geoms each."""
 FAR = 1000.0
-"""Distance in m above which robots are not told apart."""
+"""Largest distance in m that is measured; a robot that is farther from the ground stays where it is."""
 TARGET = re.compile(rf"({'|'.join(KINDS)})\.(.+)\.([a-z_]+)(?:\[(\d)\])?")
 
 
