@@ -43,7 +43,7 @@ def bytes_needed(law: Law, habitat: AnyHabitat, devices: int = 1) -> int:
         else:
             bodies = jnp.zeros((cells, habitat.senses_size), jnp.float32)
         seeds = zero((law.worlds,))
-        return empty_worlds(law, seeds, jnp), bodies, empty(law)
+        return empty_worlds(law, seeds, jnp), bodies, empty(law, jnp)
 
     leaves = jax.tree.leaves(jax.eval_shape(arrays))
     return devices * sum(leaf.size * leaf.dtype.itemsize for leaf in leaves)

@@ -113,7 +113,7 @@ def _bodies(mesh: Mesh, law: Law, habitat: JaxHabitat) -> Bodies:
 
 
 def _empty(mesh: Mesh, law: Law) -> Events:
-    return _on_each(mesh, lambda: _of_device(log.empty(law)))()
+    return _on_each(mesh, lambda: _of_device(log.empty(law, jnp)))()
 
 
 def _advance(

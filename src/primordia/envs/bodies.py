@@ -48,8 +48,8 @@ class Bodies:
         rates = dict(self.law.beginning)
         self._rates = Rates.of({name: np.full(count, rates[name], np.float32) for name in rates})
         self._judge = shared(life.judge, self.law)
-        self._sound = jnp.zeros(count, bool)
-        self._store = np.asarray(to_fixed_point(jnp.asarray(self._rates.store)))
+        self._sound = np.zeros(count, bool)
+        self._store = to_fixed_point(self._rates.store)
         self._vitals = Vitals._make((self._store, np.zeros(count, np.int32)))
         self.senses = np.zeros((count, habitat.senses_size), np.float32)
         """float32 (N, S)"""

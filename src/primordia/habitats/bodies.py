@@ -27,7 +27,12 @@ def placeholder_bodies(habitat: JaxHabitat, cells: int) -> Bodies:
         worlds = cells // sum(sizes)
         return Parts(tuple(placeholder_bodies(own, worlds * size) for own, size in each), sizes)
     made = fresh_bodies(habitat, np.zeros((MADE, habitat.words), np.uint32))
-    return jax.tree.map(lambda leaf: jnp.repeat(leaf[:1], cells, axis=0), made)
+    return shared(_first, cells)(made)
+
+
+def _first(cells: int, bodies: Bodies) -> Bodies:
+    """Return copies of the first body."""
+    return jax.tree.map(lambda leaf: jnp.repeat(leaf[:1], cells, axis=0), bodies)
 
 
 def insert_bodies(bodies: Bodies, cells: Array, new: Bodies) -> Bodies:

@@ -5,9 +5,11 @@ never as masks of cells x ticks. No event is dropped: a chunk ends before a list
 """
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+import jax
 import jax.numpy as jnp
+import numpy as np
 from jax import Array, lax
 
 from primordia.law.columns import Columns
@@ -73,19 +75,24 @@ def batch(cells: int) -> int:
     return min(max(cells // 256, 1), 1024)
 
 
-def empty(law: Law) -> Events:
-    """Return empty lists, with room for the events of several ticks."""
+def empty(law: Law, library: Any = np) -> Events:
+    """Return empty lists, with room for the events of several ticks.
+
+    The library is NumPy, since JAX would compile code for each shape, or JAX's NumPy in compiled code.
+    """
     cells = law.worlds * law.cells
 
     def empty_list(most_per_tick: int, least: int, columns: Columns) -> Rows:
         capacity = max(2 * most_per_tick, least) + batch(cells)
-        return Rows(jnp.zeros((capacity, columns.width), jnp.uint32), jnp.int32(0))
+        rows = library.zeros((capacity, columns.width), np.uint32)
+        return Rows(rows, library.zeros((), np.int32))
 
-    return Events(
+    lists = Events(
         births=empty_list(cells, 1 << 15, births_of(law)),
         deaths=empty_list(cells, 1 << 15, DEATHS),
         samples=empty_list(law.worlds, 1 << 10, sample_columns(law.rates)),
     )
+    return jax.device_put(lists, may_alias=False)
 
 
 def emptied(events: Events) -> Events:

@@ -36,9 +36,10 @@ class Metabolism(Settings):
 
 
 def to_fixed_point(value: Array) -> Array:
-    """Return float32 numbers as fixed point int32, rounded to the nearest step and saturating."""
-    steps = jnp.clip(jnp.round(value * np.float32(ONE)), -np.float32(MOST), np.float32(MOST))
-    return steps.astype(jnp.int32)
+    """Return float32 numbers as fixed point int32, rounded to the nearest step and saturating, in NumPy
+    or JAX like the input."""
+    steps = (value * np.float32(ONE)).round().clip(-np.float32(MOST), np.float32(MOST))
+    return steps.astype(np.int32)
 
 
 def food_eaten(food: Array) -> Array:

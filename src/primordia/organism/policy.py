@@ -20,7 +20,8 @@ class Policy:
     def __init__(self, law: Law, genome: np.ndarray) -> None:
         """Use a genome, float32 (P,)."""
         self._law = law
-        self._genome = law.heredity.layout.split(jnp.asarray(genome, jnp.float32)[None])
+        blocks = law.heredity.layout.split(np.array(genome, np.float32)[None])
+        self._genome = {name: jnp.asarray(block) for name, block in blocks.items()}
         self._think = shared(type(law.brain).__call__, law.brain)
         self.reset()
 

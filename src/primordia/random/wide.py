@@ -61,8 +61,13 @@ class Wide(NamedTuple):
 def wide(values: object) -> Wide:
     """Return ints or integer arrays of the host as counts; negative numbers wrap (two's complement)."""
     whole = np.asarray(np.asarray(values, dtype=object) % 2**64).astype(np.uint64)
-    hi, lo = whole >> np.uint64(32), whole & np.uint64(0xFFFFFFFF)
-    return Wide(jnp.asarray(hi.astype(np.uint32)), jnp.asarray(lo.astype(np.uint32)))
+    words = whole >> np.uint64(32), whole & np.uint64(0xFFFFFFFF)
+    return Wide(*(from_host(word.astype(np.uint32)) for word in words))
+
+
+def from_host(word: Any) -> Array:
+    """Return an array or a number of NumPy as a JAX array. JAX would compile code for numbers."""
+    return jnp.asarray(np.asarray(word))
 
 
 def to_host(value: Wide) -> np.ndarray:

@@ -111,7 +111,8 @@ class RelivedLife:
                 f"{run.path}: organism {record.id[0]} is older than {begin}, and the habitat cannot"
                 " save bodies"
             )
-        blocks = law.heredity.layout.split(jnp.asarray(genome[None]))
+        own = law.heredity.layout.split(np.array(genome[None]))
+        blocks = {name: jnp.asarray(block) for name, block in own.items()}
         return cls(run, run.config, law, habitat, blocks, record, stored)
 
     @property
