@@ -156,23 +156,15 @@ def test_an_output_that_is_not_finite_is_a_fault_wherever_it_is() -> None:
     np.testing.assert_array_equal(found.action, outputs)
 
 
-def test_the_gaussian_motor_adds_noise_of_its_own_scale_to_each_output() -> None:
-    outputs = np.arange(15, dtype=np.float32).reshape(5, 3)
-    noise = quantiles()[np.asarray(NOISE(key_of(5), np.arange(5), 3))]
-    for sd in (0.0, 0.25, 2.0):
-        action = thought(Motor(kind="gaussian", sd=sd), outputs).action
-        np.testing.assert_allclose(action, outputs + sd * noise, rtol=1e-6)
-
-
-def test_the_gaussian_motor_leaves_choices_alone() -> None:
-    """A choice is the largest output, whatever the noise; only the numbers beside it have noise."""
-    outputs = np.random.default_rng(5).normal(size=(40, 5)).astype(np.float32)
-    noise = quantiles()[np.asarray(NOISE(key_of(40), np.arange(40), 5))]
-    action = Compound((Discrete(2), Continuous(1), Discrete(2)))
+def test_the_gaussian_motor_adds_noise_of_its_scale_to_numbers_and_leaves_choices_alone() -> None:
+    """A choice is the largest output, whatever the noise. Each number beside it has noise of its own."""
+    outputs = np.random.default_rng(5).normal(size=(40, 6)).astype(np.float32)
+    noise = quantiles()[np.asarray(NOISE(key_of(40), np.arange(40), 6))]
+    action = Compound((Discrete(2), Continuous(2), Discrete(2)))
     found = np.asarray(thought(Motor(kind="gaussian", sd=100.0), outputs, action).action)
     np.testing.assert_array_equal(found[:, 0], outputs[:, :2].argmax(axis=1))
-    np.testing.assert_allclose(found[:, 1], outputs[:, 2] + 100 * noise[:, 2], rtol=1e-5)
-    np.testing.assert_array_equal(found[:, 2], outputs[:, 3:].argmax(axis=1))
+    np.testing.assert_allclose(found[:, 1:3], outputs[:, 2:4] + 100 * noise[:, 2:4], rtol=1e-5)
+    np.testing.assert_array_equal(found[:, 3], outputs[:, 4:].argmax(axis=1))
 
 
 def a_world(alive: np.ndarray, hazard: list[float], replication: list[float]) -> World:

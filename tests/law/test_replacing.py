@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from primordia.law.world import Cause
 from primordia.random.keys import Purpose
 from primordia.random.wide import wide
 from tests.law.test_placement import one_after_another
@@ -43,24 +42,6 @@ def tick() -> Turned:
 def parents() -> np.ndarray:
     """Return the parent of the child that is born in each cell, or -1."""
     return one_after_another("well-mixed", "replacing", words(Purpose.PLACE)[None], WANTS, ALIVE)
-
-
-def test_an_organism_that_dies_is_not_replaced_by_the_child_in_its_cell(tick: Turned) -> None:
-    """Its cause of death stays on record. An organism without a cause is replaced by the child."""
-    births, deaths = tick.births, tick.deaths
-    taken = parents() >= 0
-    expected = {
-        cell + 100: int(CAUSES[cell]) if CAUSES[cell] >= 0 else Cause.REPLACED
-        for cell in range(N)
-        if ALIVE[cell] and (CAUSES[cell] >= 0 or taken[cell])
-    }
-    assert dict(zip(deaths["id"].tolist(), deaths["cause"].tolist(), strict=True)) == expected
-    assert taken[CAUSES >= 0].any()
-    assert taken[~ALIVE].all(), "a birth in an empty cell is no death"
-    assert Cause.REPLACED in expected.values()
-    assert births["cell"].tolist() == np.flatnonzero(taken).tolist()
-    assert births["parent"].tolist() == (parents()[taken] + 100).tolist()
-    np.testing.assert_array_equal(tick.organisms.alive, taken | WANTS)
 
 
 def test_an_organism_that_is_replaced_is_a_parent_but_no_mate(tick: Turned) -> None:
