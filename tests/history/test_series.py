@@ -71,7 +71,7 @@ def test_the_middle_of_a_bin_is_that_of_its_ticks_on_a_logarithmic_axis() -> Non
     np.testing.assert_allclose(middle, [1, 2, np.sqrt(3 * 10)])
 
 
-@pytest.mark.parametrize("last", [1, 999, 10**6])
+@pytest.mark.parametrize("last", [1, 10**6])
 def test_curves_have_points_at_even_distances_on_a_logarithmic_axis(last: int) -> None:
     ticks = series.moments(last)
     assert ticks.tolist() == sorted({round(last ** (k / 999)) for k in range(1000)})

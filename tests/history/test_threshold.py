@@ -101,13 +101,6 @@ def test_a_world_in_which_nothing_is_known_says_so() -> None:
     assert (found.as_good, found.advantage) == (None, None)
 
 
-@pytest.mark.parametrize(
-    ("p", "v", "s", "held"), [(0.5, 0, 2, 1), (0.1, 0, 1.2, 1.08), (1, 1, 3, 3)]
-)
-def test_the_threshold_is_eigens(p: float, v: float, s: float, held: float) -> None:
-    assert Threshold(0, p, v, s).held == pytest.approx(held)
-
-
 def test_stretches_of_births_are_measured_one_by_one() -> None:
     """A half of the first family's mutants are as good, all of the second's."""
     first: list = [(-1, FOUNDER, 100), *((-1, FOUNDER, 1) for _ in range(100))]
