@@ -1,12 +1,9 @@
 """Two genomes in one empty world."""
 
 import json
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
-from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -16,8 +13,6 @@ from primordia.assays import compete as module
 from primordia.assays.compete import Competition, compete
 from primordia.assays.subjects import Subjects, of_run
 from primordia.errors import InputError
-from primordia.law.world import BirthCause
-from primordia.runs.lives import Lives
 from primordia.settings.limits import ForkedFrom, Stop
 from tests.assays.lives import COPY, FOUNDER
 from tests.assays.lives import lives as lives_of
@@ -33,35 +28,6 @@ def sides(poles: primordia.Run) -> tuple[Subjects, Subjects]:
     fallen = int(lives.id[np.argmin(np.where(lives.world == 0, lives.lifespan, 10**9))])
     run = poles.opened()
     return of_run(run, [(champion.id, 0)]), of_run(run, [(fallen, 0)])
-
-
-@contextmanager
-def kept() -> Iterator[list[Lives]]:
-    """Keep the lives of all worlds of a competition, in which all children are copies."""
-    lived: list[Lives] = []
-    shares = module._shares
-
-    def keep(lives: Lives, *rest: Any) -> np.ndarray:
-        lived.append(lives)
-        return shares(lives, *rest)
-
-    with patch.object(module, "_shares", keep):
-        yield lived
-    causes = np.concatenate([lives.birth_cause for lives in lived])
-    assert (causes == BirthCause.COPY).sum() > 20
-    assert not (causes == BirthCause.MUTANT).any()
-
-
-@pytest.mark.slow
-def test_the_longer_lived_takes_over_and_children_are_exact_copies(
-    sides: tuple[Subjects, Subjects],
-) -> None:
-    with kept() as lived:
-        found = compete(*sides, worlds=6, ticks=400)
-    assert len(lived) == 6
-    assert (found.tick[0], found.tick[-1], found.won) == (0, 400, (6, 0))
-    assert found.p == pytest.approx(2 / 2**6)
-    assert found.share[:, -1].min() > 0.8
 
 
 def test_one_organism_competes_on_a_side(poles: primordia.Run) -> None:

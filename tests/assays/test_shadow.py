@@ -137,10 +137,7 @@ def test_lives_are_cut_at_the_age_of_saturation_or_at_a_given_one(
     lives = worlds_of([(k, 0, True) for k in range(10)], [(3, 1, True)] * 4, until=50)
     lives.inherited[[0, 1, 2, 10, 11, 12]] = True
     run: Any = SimpleNamespace(
-        config=SimpleNamespace(saturation_ticks=77),
-        lives=lives,
-        path=Path("runs/a"),
-        made_on="cpu",
+        config=SimpleNamespace(saturation_ticks=77), lives=lives, path=Path("runs/a"), made_on="cpu"
     )
     found = shadow(run)
     assert (found.name, found.births, found.cut) == ("a", 8, 77)

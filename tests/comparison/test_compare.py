@@ -97,45 +97,6 @@ def test_the_command_shows_tables_and_draws_a_figure(runs: list[Path], tmp_path:
         assert str(tmp_path / "new" / name) in done.stdout
 
 
-def test_runs_are_compared_up_to_a_horizon_that_all_worlds_reached(
-    runs: list[Path], tmp_path: Path
-) -> None:
-    compared = primordia.compare(*runs, ticks=600)
-    for arm, whole in zip(compared.arms, primordia.compare(*runs).arms, strict=True):
-        within = whole.measured["ticks"].known & (whole.measured["ticks"].value < 600)
-        assert arm.saturated == within.sum()
-    early = primordia.compare(*runs, ticks=100)
-    assert early.arms[0].saturated <= compared.arms[0].saturated
-    assert (
-        "saturated within 100 ticks"
-        in here("compare", *runs, "--ticks", 100, "--out", tmp_path).stdout
-    )
-
-
-AT = 60
-"""The tick of a fork, by which some worlds are saturated."""
-
-
-def test_births_and_ticks_count_from_the_fork(runs: list[Path], tmp_path: Path) -> None:
-    source = primordia.Run(runs[2])
-    fork = source.fork(AT, tmp_path / "fork")
-    whole, part = primordia.compare(source, fork).arms
-    born, worlds = source.arrays("births"), source.info()["worlds"]
-    for number, world in enumerate(worlds):
-        before = (born["tick"][born["world"] == number] <= AT).sum()
-        expected = {"births": world["saturation"]["births"] - before, "ticks": world["ticks"] - AT}
-        for unit, value in expected.items():
-            for arm in (whole, part):
-                assert arm.measured[unit].known[number]
-                assert arm.measured[unit].value[number] == max(value, 0), unit
-    firsts = [arm.measured["first"].value for arm in (whole, part)]
-    np.testing.assert_array_equal(*firsts)
-    assert (firsts[0] <= whole.measured["births"].value).all()
-    assert primordia.compare(source, fork, ticks=1).arms[1].saturated == 0
-    printed = here("compare", source.path, fork.path, "--out", tmp_path).stdout
-    assert f"count from tick {AT}, the tick of the fork" in printed
-
-
 def test_runs_that_cannot_be_compared_are_refused(runs: list[Path], tmp_path: Path) -> None:
     other = shutil.copytree(runs[0], tmp_path / "other")
     settings = (other / "config.toml").read_text().replace('task = "meadow"', 'task = "pasture"')

@@ -39,17 +39,6 @@ def test_pairs_count_where_their_order_is_known(pairs: list) -> None:
     assert within.delta == pytest.approx((larger - smaller) / len(pairs))
 
 
-@given(PAIRS)
-def test_delta_within_seeds_changes_sign_when_the_runs_are_swapped(pairs: list) -> None:
-    run, reference = both(pairs)
-    there, back = (
-        contrast(*each, in_order(pairs)) for each in ((run, reference), (reference, run))
-    )
-    assert there.paired.delta == -back.paired.delta
-    assert there.needed == back.needed
-    assert contrast(run, run, in_order(pairs)).paired.delta == 0
-
-
 @given(ENOUGH, st.data())
 def test_the_order_of_worlds_in_a_run_does_not_matter(pairs: list, data: st.DataObject) -> None:
     """Worlds are matched by their seeds."""

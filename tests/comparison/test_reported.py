@@ -7,12 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from primordia.comparison.contrast import contrast
 from primordia.comparison.measured import Measured
 from primordia.comparison.moments import first_long, often_saturated
 from primordia.comparison.resample import RESAMPLES, interval
 from primordia.comparison.survival import survival
-from primordia.organism.playing.evaluation import Spread
 from tests.synthetic import LIVED, alive, world_of, worlds_of
 
 Lived = list[tuple[int, int, bool]]
@@ -102,17 +100,6 @@ def test_an_interval_holds_95_percent_of_the_resamples() -> None:
     assert high.tolist() == [974, -25]
 
 
-def test_the_worlds_of_two_runs_are_drawn_independently() -> None:
-    """With the same draws the ratio of a run to its equal would be 1 in every resample."""
-    values = np.random.default_rng(2).lognormal(0, 1, 30)
-    one = Measured(values, np.ones(30, bool))
-    bounds = contrast(one, one).interval
-    assert bounds is not None
-    low, high = bounds
-    assert low < 0.8 < 1.2 < high
-    assert low * high == pytest.approx(1, rel=0.35)
-
-
 @given(st.lists(st.tuples(st.integers(1, 30), st.booleans()), min_size=1, max_size=15))
 def test_bounds_of_quartiles_are_order_statistics(worlds: list[tuple[int, bool]]) -> None:
     value, known = (np.array(column) for column in zip(*worlds, strict=True))
@@ -124,8 +111,3 @@ def test_bounds_of_quartiles_are_order_statistics(worlds: list[tuple[int, bool]]
         assert measured.quantile(q) == (low, high)
     quartiles = [measured.quantile(q)[0] for q in (0.25, 0.5, 0.75)]
     assert all(low <= high for low, high in pairwise(quartiles))
-
-
-def test_the_spread_of_games_is_minimum_quartiles_and_maximum() -> None:
-    assert Spread.of(np.array([40.0, 10, 20, 30, 0])) == (0, 10, 20, 30, 40)
-    assert Spread.of(np.array([1.0, 2.0])) == (1, 1.25, 1.5, 1.75, 2.0)

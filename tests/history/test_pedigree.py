@@ -64,17 +64,6 @@ def test_a_redrawn_genome_is_another_one_and_always_the_same(noted: Path) -> Non
     assert redrawn.std() == pytest.approx(recorded.std(), rel=0.5)
 
 
-def test_redrawn_genomes_do_not_depend_on_recorded_notes(
-    noted: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A redrawn child mutates by the redrawn notes of its parent; the recorded ones were selected."""
-    run = Archive(noted)
-    rows = np.arange(len(run.lives))
-    redrawn = genomes(run, rows, redrawn=True)
-    monkeypatch.setattr(Archive, "notes_of", lambda _, lives: np.full((len(lives), 1), 7, np.int32))
-    assert genomes(Archive(noted), rows, redrawn=True).tobytes() == redrawn.tobytes()
-
-
 def test_organisms_that_were_alive_at_a_fork_keep_their_genomes(forked: Path) -> None:
     run = Archive(forked)
     inherited = np.flatnonzero(run.lives.inherited)

@@ -2,7 +2,6 @@
 
 import signal
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -12,38 +11,9 @@ from primordia.errors import InputError
 from primordia.history.rebuilding import descent, rebuild_all
 from primordia.runs import checkpoint, loop, recorder
 from primordia.runs.archive import Archive
-from tests.worlds import HERD, MEADOW, MILL, config, merged
+from tests.worlds import HERD, MEADOW, config
 
 SMALL = {"hidden": 6}
-SHIFTING = {
-    **MILL,
-    "brain": SMALL,
-    "seasons": [
-        {"kind": "ratchet", "setting": "mutation.scale", "when": "mean_age", "above": 5.0,
-         "factor": 0.9, "every": 70},
-        {"kind": "schedule", "setting": "mutation.probability", "at": 333, "value": 0.9},
-        {"kind": "schedule", "setting": "mutation.blocks.output.scale", "at": 500, "value": 0.0},
-    ],
-}  # fmt: skip
-BLOCKS = {
-    "probability": 0.3,
-    "scale": 0.02,
-    "founder_scale": 0.1,
-    "blocks": {
-        "input": {"probability": 0.8, "founder_scale": 1.0},
-        "output": {"probability": 0.0, "scale": 0.5},
-    },
-}
-LIVES = {"brain": SMALL, "hazard": 0.03, "replication": 0.3}
-WORLDS: dict[str, tuple[dict[str, Any], int]] = {
-    "seasons that change mutation, several worlds": ({**SHIFTING, "seeds": 3, "seed": 7}, 1_200),
-    "blocks that mutate apart": ({**MEADOW, **LIVES, "mutation": BLOCKS, "seed": 2**63}, 1_000),
-    "every child a founder": ({**MEADOW, **LIVES, "inheritance": "founder"}, 500),
-    "children that replace others on a torus": (
-        {**MEADOW, **LIVES, "placement": {"topology": "torus8", "rule": "replacing"}, "seeds": 2},
-        400,
-    ),
-}
 
 
 def living(run: Path) -> list[tuple[int, int, np.ndarray]]:
@@ -96,25 +66,12 @@ def test_genomes_are_rebuilt_over_hundreds_of_generations(deep: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", WORLDS)  # tests/engine/test_strange.py has the other rules
-def test_the_genomes_of_all_the_living_are_rebuilt(name: str, tmp_path: Path) -> None:
-    values, ticks = WORLDS[name]
-    run = tmp_path / "run"
-    loop.start(config(merged(values, {"stop": {"ticks": ticks}})), run)
-    assert_rebuilt(run)
-    births = primordia.Run(run).table("births")
-    causes = set(births["cause"].to_pylist())
-    assert causes == ({"founder"} if values.get("inheritance") else {"founder", "copy", "mutant"})
-    assert set(births["world"].to_pylist()) == set(range(values.get("seeds", 1)))
-
-
-@pytest.mark.slow
 def test_genomes_are_rebuilt_while_a_run_continues(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Some rows are in segments, other rows in open tails."""
     monkeypatch.setattr(recorder, "SEGMENT_ROWS", 100)
-    values, _ = WORLDS["blocks that mutate apart"]
+    values = {**MEADOW, "hazard": 0.03, "replication": 0.3, "seed": 2**63}
     run = tmp_path / "run"
 
     def press(status: loop.Status) -> None:

@@ -152,16 +152,6 @@ def test_mutants_that_outlive_copies_count_as_equally_good() -> None:
     assert measured(lives(*rows, *none, *better)).as_good is None
 
 
-def test_pairs_are_complete_once_both_are_dead() -> None:
-    rows: list = [(-1, FOUNDER, 9), (-1, FOUNDER, 9, "alive")]
-    rows += [(0, COPY, 5), (0, MUTANT, 5, "alive"), (1, COPY, 5), (1, COPY, 5, "alive")]
-    found = families(lives(*rows), 0.0)
-    assert found.complete.tolist() == [True, False, False, False]
-    assert found.child.tolist() == [2, 3, 4, 5]
-    assert found.parent.tolist() == [0, 0, 1, 1]
-    assert found.mutant.tolist() == [False, True, False, False]
-
-
 def test_organisms_alive_at_a_fork_are_parents_but_no_births() -> None:
     """Organisms that were alive at the fork had lived long. Only later births are measured."""
     rows: list = [(-1, FOUNDER, 100)] + [(0, MUTANT, 500)] * 20

@@ -50,20 +50,20 @@ SETTINGS = {"saturation": "replication", "mean_age": "metabolism.gain", "food": 
 
 
 def test_a_ratchet_turns_above_its_threshold_and_not_at_it() -> None:
-    """Each looks on its own. Of two equal ratchets, here those of saturation, both turn."""
-    seen = {"saturation": [4 / 8, 5 / 8, 6 / 8], "mean_age": [10.0] * 3, "food": [1 / 4, 1 / 6, -1]}
-    for below in (0.0, 1 / 1024):
-        above = {when: values[0] - below for when, values in seen.items()}
-        every = [ratchet(when, above[when], name) for when, name in SETTINGS.items()]
-        law = meadow_law(every[0], *every, hazard=0.5)
-        worlds, changed = applied(law, posed(law, [[0] * 4] * W))
-        turned = {when: np.array(seen[when]) > above[when] for when in SETTINGS}
-        assert changed == np.any([*turned.values()], axis=0).tolist()
-        for when, name in SETTINGS.items():
-            factor = np.where(turned[when], 0.25 if when == "saturation" else 0.5, 1)
-            expected = np.float32(dict(law.beginning)[name]) * np.float32(factor)
-            np.testing.assert_array_equal(worlds.climate[name], expected, name)
-        assert worlds.looks.wait.tolist() == [[20] * 4] * W
+    """The first world is at all thresholds. Of two equal ratchets, those of saturation, both turn."""
+    above = {"saturation": 4 / 8, "mean_age": 10.0, "food": 1 / 4}
+    every = [ratchet(when, above[when], name) for when, name in SETTINGS.items()]
+    law = meadow_law(every[0], *every, hazard=0.5)
+    (organisms, worlds) = posed(law, [[0] * 4] * W)
+    born = wide(np.repeat([TICK - 10, TICK - 9, TICK - 11], N))
+    worlds = worlds._replace(food=wide([100 * ONE, -ONE, 51 * ONE]))
+    worlds, changed = applied(law, World(organisms._replace(born=born), worlds))
+    turned = {"saturation": [1, 0.25, 0.25], "mean_age": [1, 1, 0.5], "food": [1, 1, 0.5]}
+    assert changed == [False, True, True]
+    for when, name in SETTINGS.items():
+        expected = np.float32(dict(law.beginning)[name]) * np.float32(turned[when])
+        np.testing.assert_array_equal(worlds.climate[name], expected, name)
+    assert worlds.looks.wait.tolist() == [[20] * 4] * W
 
 
 def test_a_ratchet_that_is_due_looks_at_the_food_since_its_own_last_look() -> None:

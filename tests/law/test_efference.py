@@ -4,16 +4,13 @@ from typing import Any
 
 import jax
 import numpy as np
-import pytest
 from jax import Array
 
 from primordia.brains.contract import Brain
-from primordia.brains.linear import Linear
 from primordia.brains.plastic import Plastic
 from primordia.habitats.contract import Compound, Continuous, Discrete
 from primordia.law.efference import Efferent
 from primordia.law.metabolism import ONE
-from primordia.testing import check_brain
 from tests.worlds import law_of
 
 SENSES = 2
@@ -59,13 +56,6 @@ def test_pictures_show_what_the_inner_brain_remembers() -> None:
     pictured: Any = brain.pictured
     (kept,) = pictured(memory, SENSES, size).values()
     np.testing.assert_array_equal(kept[:, 0], memory[:, : 2 * SENSES + size])
-
-
-@pytest.mark.parametrize(
-    "inner", [Linear(), pytest.param(Plastic(hidden=3), marks=pytest.mark.slow)]
-)
-def test_it_is_a_brain_like_any_other(inner: Brain) -> None:
-    check_brain(Efferent(inner=inner, action=PARTS), 3, PARTS.size)
 
 
 def test_the_price_of_learning_is_that_of_the_inner_brain() -> None:

@@ -10,7 +10,7 @@ from jax import Array
 
 from primordia.law import events as log
 from primordia.law.columns import Columns
-from primordia.law.events import Events, Rows
+from primordia.law.events import Rows
 from primordia.law.world import BirthCause, Cause
 from primordia.random.wide import wide
 
@@ -55,8 +55,7 @@ def test_rows_of_the_device_have_the_words_of_the_host() -> None:
 
 
 @pytest.mark.parametrize(
-    ("cells", "most"),
-    [(1, 1), (511, 1), (512, 2), (256 * 1024, 1024), (2**22, 1024)],
+    ("cells", "most"), [(1, 1), (511, 1), (512, 2), (256 * 1024, 1024), (2**22, 1024)]
 )
 def test_large_worlds_write_more_events_at_once(cells: int, most: int) -> None:
     assert log.batch(cells) == most
@@ -86,13 +85,6 @@ def test_each_true_cell_is_visited_once_in_order(share: float) -> None:
     assert int(calls) == -(-len(where) // 5)
     assert (np.asarray(listed.rows[:3]) == 9).all()
     np.testing.assert_array_equal(listed.rows[3:filled], np.stack([where, where + 1], 1))
-
-
-def test_emptied_lists_begin_at_the_first_row() -> None:
-    lists: Any = Events(*(Rows(np.ones((4, 2), np.uint32), np.int32(n)) for n in (1, 2, 3)))
-    for list_, before in zip(log.emptied(lists), lists, strict=True):
-        assert int(list_.filled) == 0
-        assert list_.rows is before.rows
 
 
 def test_each_cause_has_a_number_and_a_word() -> None:

@@ -17,10 +17,9 @@ from primordia.law.metabolism import (
     Rates,
     break_even,
     metabolise,
-    to_fixed_point,
 )
 
-FIXED, METABOLISE = jax.jit(to_fixed_point), jax.jit(metabolise)
+METABOLISE = jax.jit(metabolise)
 RATES = ("store", "drain", "gain", "effort_cost", "cap")
 
 
@@ -45,14 +44,6 @@ numbers = st.lists(
     min_size=8,
     max_size=8,
 )
-
-
-@settings(max_examples=50)
-@given(numbers)
-def test_amounts_are_rounded_to_the_nearest_step_and_saturate(values: list[float]) -> None:
-    steps = FIXED(np.array(values, np.float32))
-    assert steps.dtype == np.int32
-    assert steps.tolist() == [exact(float(np.float32(v))) for v in values]
 
 
 rate = st.lists(

@@ -49,15 +49,19 @@ def words(seed: int) -> np.ndarray:
 
 @pytest.mark.parametrize(
     ("topology", "rule"),
-    [("ring", "blind"), ("torus4", "replacing"), ("torus8", "empty-only"),
-     ("well-mixed", "empty-only"), ("well-mixed", "replacing")],
-)  # fmt: skip
+    [
+        ("ring", "blind"),
+        ("torus4", "replacing"),
+        ("torus8", "empty-only"),
+        ("well-mixed", "replacing"),
+    ],
+)
 def test_placing_all_at_once_equals_placing_one_by_one(topology: Any, rule: Any) -> None:
     """Each world is filled to a random share. In every second world many priorities are equal. In world 5
     no organism wants a child.
 
     There is room beside an organism if a cell in its reach would take a child. Each topology and each
-    rule is tried; only well-mixed worlds look for a cell in another way with each rule.
+    rule is tried; `test_draws.py` looks for empty cells of well-mixed worlds.
     """
     placement = Placement(topology=topology, rule=rule)
 

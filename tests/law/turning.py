@@ -61,10 +61,7 @@ def turned(
     )
     births, deaths = (
         columns.unpacked(np.asarray(list_.rows)[: int(list_.filled)])
-        for columns, list_ in (
-            (log.births_of(law), lists.births),
-            (log.DEATHS, lists.deaths),
-        )
+        for columns, list_ in ((log.births_of(law), lists.births), (log.DEATHS, lists.deaths))
     )
     return Turned(organisms, worlds, np.asarray(newborn), births, deaths)
 
