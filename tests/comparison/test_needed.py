@@ -15,7 +15,6 @@ from primordia.comparison.pairs import Paired
 from primordia.comparison.resample import LEAST, RESAMPLES, enough, interval, least
 
 LEVEL = st.sampled_from([0.05, 0.025, 0.01, 0.001])
-SIZE = st.floats(0.01, 1)
 
 
 def known(values: np.ndarray) -> Measured:

@@ -6,11 +6,9 @@ from hypothesis import strategies as st
 
 from primordia.comparison.pace import LATE, WINDOWS, pace
 from tests.synthetic import LIVED, alive, world_of
-from tests.worlds import HERD
 
 TICKS = 7
 """ticks of a window"""
-LIFESPAN = HERD["habitat"]["lifespan"]
 
 
 @given(LIVED, LIVED, st.integers(0, 20))

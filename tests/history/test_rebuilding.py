@@ -1,6 +1,5 @@
 """Promise 2: nothing that lived is lost. Genomes are rebuilt from birth records, bit for bit."""
 
-import signal
 from pathlib import Path
 
 import numpy as np
@@ -9,11 +8,9 @@ import pytest
 import primordia
 from primordia.errors import InputError
 from primordia.history.rebuilding import descent, rebuild_all
-from primordia.runs import checkpoint, loop, recorder
+from primordia.runs import loop
 from primordia.runs.archive import Archive
-from tests.worlds import HERD, MEADOW, config
-
-SMALL = {"hidden": 6}
+from tests.worlds import HERD, config
 
 
 def living(run: Path) -> list[tuple[int, int, np.ndarray]]:
@@ -63,28 +60,6 @@ def test_genomes_are_rebuilt_over_hundreds_of_generations(deep: Path) -> None:
     assert info["saturation"] is None
     assert max(depth(deep, organism) for _, organism, _ in living(deep)) >= 200
     assert_rebuilt(deep)
-
-
-@pytest.mark.slow
-def test_genomes_are_rebuilt_while_a_run_continues(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Some rows are in segments, other rows in open tails."""
-    monkeypatch.setattr(recorder, "SEGMENT_ROWS", 100)
-    values = {**MEADOW, "hazard": 0.03, "replication": 0.3, "seed": 2**63}
-    run = tmp_path / "run"
-
-    def press(status: loop.Status) -> None:
-        if int(status.engine.state.world.worlds.births.lo[0]) > 250:
-            signal.raise_signal(signal.SIGINT)
-
-    with pytest.raises(KeyboardInterrupt):
-        loop.start(config(values), run, listen=press)
-    last, _ = checkpoint.newest(run)
-    assert last is not None
-    assert len(last.manifest.segments["births"]) >= 2
-    assert len(Archive(run).state["tail.births"]) > 0
-    assert_rebuilt(run)
 
 
 @pytest.fixture(scope="module")

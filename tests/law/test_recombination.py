@@ -13,15 +13,6 @@ from primordia.law.recombination import Recombination
 from primordia.random.wide import Wide
 from primordia.settings.islands import Islands
 
-LAYOUT = Layout((("input", (4, 7)), ("recurrent", (4, 4)), ("output", (2, 4)), ("bias", (4,))))
-K = 3_000
-
-
-def mates_of(word: Wide, candidates: np.ndarray, probability: float = 1.0) -> np.ndarray:
-    return np.asarray(
-        shared(Recombination.mates, Recombination(probability=probability))(word, candidates)
-    )
-
 
 def test_a_mate_is_chosen_by_the_high_word_and_refused_by_the_low_one() -> None:
     """The high word picks one of the candidates. A low word below the probability brings a mate."""
@@ -31,7 +22,8 @@ def test_a_mate_is_chosen_by_the_high_word_and_refused_by_the_low_one() -> None:
     low[:4] = 2**31 - 1, 2**31, 0, 2**32 - 1
     candidates[:4] = True
     for probability in (0.0, 0.5, 1.0):
-        found = mates_of(Wide(high, low), candidates, probability)
+        mates_of = shared(Recombination.mates, Recombination(probability=probability))
+        found = np.asarray(mates_of(Wide(high, low), candidates))  # type: ignore[arg-type]
         for row, mate in enumerate(found.tolist()):
             cells = np.flatnonzero(candidates[row]).tolist()
             wanted = cells and int(low[row]) < probability * 2**32
