@@ -205,7 +205,7 @@ def test_an_evaluation_has_the_given_options_or_the_usual_ones(
     }  # fmt: skip
     assert asked == [("settings", "players", [(3, 1)], options)]
     group.evaluate()
-    usual = {
+    usual: dict[str, Any] = {
         "games": 30 if chosen_from > 1 else 1,
         "ticks": 100_000,
         "senses": "live",

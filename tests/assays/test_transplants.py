@@ -25,7 +25,7 @@ def settings_of(run: Records, world: int, island: int) -> Rates:
         name.removeprefix("world.worlds.climate."): value for name, value in run.state.items()
     }
     own = [stored.get(name, stored[name.partition(".")[2]])[world] for name in names]
-    return Rates(*(np.full(EACH, value) for value in own))  # type: ignore[arg-type]
+    return Rates(*(np.full(EACH, value) for value in own))
 
 
 def test_natives_live_on_each_island_as_in_a_plain_world(isles: primordia.Run) -> None:

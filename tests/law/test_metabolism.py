@@ -6,7 +6,7 @@ from fractions import Fraction
 import jax
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
@@ -58,6 +58,11 @@ energies = st.lists(
 )
 
 
+TIES = [steps / 2 / ONE for steps in (1, 3, 5, -1, -3, 7, 0, 9)]
+NONE, ALL = [0.0] * 8, [1.0] * 8
+
+
+@example([0] * 8, TIES, NONE, NONE, ALL, NONE, [1e6] * 8)
 @settings(max_examples=50)
 @given(energies, numbers, numbers, rate, rate, rate, rate)
 def test_a_tick_changes_energy_as_exact_arithmetic_does(

@@ -23,7 +23,7 @@ def test_a_mate_is_chosen_by_the_high_word_and_refused_by_the_low_one() -> None:
     candidates[:4] = True
     for probability in (0.0, 0.5, 1.0):
         mates_of = shared(Recombination.mates, Recombination(probability=probability))
-        found = np.asarray(mates_of(Wide(high, low), candidates))  # type: ignore[arg-type]
+        found = np.asarray(mates_of(Wide(high, low), candidates))
         for row, mate in enumerate(found.tolist()):
             cells = np.flatnonzero(candidates[row]).tolist()
             wanted = cells and int(low[row]) < probability * 2**32
