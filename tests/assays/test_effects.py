@@ -240,7 +240,7 @@ def test_each_moment_holds_what_was_sensed_and_remembered_at_its_tick(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Three organisms live for 13, 4 and 9 ticks. New moments take the places of the oldest."""
-    lived, kept, every = np.array([13, 4, 9]), 3, 2
+    lived, kept, every = np.array([13, 4, 9]), 3, 3
     sensed = np.random.default_rng(0).random((13, 3, 5)).astype(np.float32)
     thought = np.random.default_rng(1).random((13, 3, 2)).astype(np.float32)
 
