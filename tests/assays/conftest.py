@@ -1,12 +1,11 @@
-"""A run whose organisms live again."""
+"""Runs whose organisms live again."""
 
 import pytest
 
 import primordia
 from primordia.runs import loop
+from tests.engine.test_islands import WHEELS
 from tests.worlds import config
-
-HEAVY = {"factors": {"gravity": 40.0}}
 
 
 @pytest.fixture(scope="session")
@@ -19,9 +18,7 @@ def poles(tmp_path_factory: pytest.TempPathFactory) -> primordia.Run:
 
 @pytest.fixture(scope="session")
 def isles(tmp_path_factory: pytest.TempPathFactory) -> primordia.Run:
-    """Return two worlds of poles on two islands; on `heavy` poles fall soon."""
+    """Return two worlds of three islands: `mill` and `slow` have one habitat, `watch` another."""
     path = tmp_path_factory.mktemp("assays") / "isles"
-    islands = [{"name": "light"}, {"name": "heavy", "share": 3, "habitat": HEAVY}]
-    settings = {"genesis": "fill", "habitat": {"islands": islands}, "stop": {"ticks": 300}}
-    loop.start(config(seeds=2, cells=16, **settings), path)
+    loop.start(config(WHEELS, stop={"ticks": 200}), path)
     return primordia.load(path)

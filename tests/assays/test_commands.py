@@ -26,12 +26,19 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> primordia.Run:
     return primordia.load(path)
 
 
-@pytest.mark.parametrize("name", ["heredity", "threshold"])
-def test_json_holds_what_python_returns(name: str, run: primordia.Run) -> None:
+@pytest.mark.parametrize(
+    ("name", "words"), [("heredity", "slope"), ("threshold", "s (1 - p (1 - v))")]
+)
+def test_assays_of_records_tell_what_python_returns(
+    name: str, words: str, run: primordia.Run
+) -> None:
     told = json.loads(here("assay", name, run.path, "--after", "0.25", "--json").stdout)
     found = getattr(run, name)(0.25)
     assert told == {str(run.path): [each.to_dict() for each in found]}
     assert [each.world for each in found] == [0, 1, 2]
+    table = here("assay", name, run.path).stdout
+    assert words in table
+    assert "3 worlds" in table
 
 
 def test_where_death_ignores_the_genome_nothing_is_inherited(run: primordia.Run) -> None:
@@ -43,28 +50,18 @@ def test_where_death_ignores_the_genome_nothing_is_inherited(run: primordia.Run)
         assert world.advantage == pytest.approx(1, abs=0.5)
 
 
-@pytest.mark.parametrize(
-    ("name", "words"), [("heredity", "slope"), ("threshold", "s (1 - p (1 - v))")]
-)
-def test_the_table_names_its_rows(name: str, words: str, run: primordia.Run) -> None:
-    done = here("assay", name, run.path)
-    assert done.returncode == 0
-    assert words in done.stdout
-    assert "3 worlds" in done.stdout
-
-
 @pytest.mark.parametrize("name", ["effects", "ablate", "garden", "line"])
 def test_assays_of_lives_tell_what_python_returns(
     name: str, poles: primordia.Run, tmp_path: Path
 ) -> None:
     options = ["--games", 1, "--ticks", 60, "--out", tmp_path]
-    options += {"effects": ["--mutants", 5, "--scale", 0.1], "garden": ["--each", 2]}.get(name, [])
+    options += {"effects": ["--mutants", 30, "--scale", 0.1], "garden": ["--each", 2]}.get(name, [])
     told = here("assay", name, poles.path, *options, "--json")
     assert told.returncode == 0, told.stderr
     run, subjects = poles.opened(), of_run(poles.opened())
     champion = poles.oldest()
     expected: list[Any] = {
-        "effects": lambda: effects(subjects, (0.1,), count=5, games=1, ticks=60),
+        "effects": lambda: effects(subjects, (0.1,), count=30, games=1, ticks=60),
         "ablate": lambda: ablate(subjects, games=1, ticks=60),
         "garden": lambda: garden(run, each=2, games=1, ticks=60),
         "line": lambda: [line(run, champion.id, champion.world, games=1, ticks=60)],

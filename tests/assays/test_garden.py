@@ -6,7 +6,7 @@ import pytest
 import primordia
 from primordia.assays import garden as module
 from primordia.assays.garden import Bed, _oldest, _spaced, garden
-from primordia.errors import InputError
+from primordia.organism.playing.evaluation import changed
 from primordia.organism.playing.games import Players
 from primordia.runs.lives import Lives
 
@@ -31,27 +31,11 @@ def test_each_world_has_a_bed_of_each_group(poles: primordia.Run) -> None:
         assert bed.to_dict()["reborn"] == bed.reborn.tolist()
 
 
-def test_organisms_without_a_recorded_life_keep_nothing() -> None:
-    bed = Bed("oldest", 0, np.arange(2), np.zeros(2, int), np.array([3.0, 4.0]))
-    assert bed.kept is None
-
-
 def test_the_reborn_live_as_in_an_evaluation(poles: primordia.Run) -> None:
     bed = garden(poles.opened(), each=3, games=2, ticks=400)[1]
     organisms = [poles.organism(int(each), 1) for each in bed.organism]
     evaluated = poles.evaluate(organisms, games=2, ticks=400)
     assert bed.reborn.tolist() == [each.lived.ticks.mean() for each in evaluated]
-
-
-@pytest.mark.slow
-def test_founders_live_in_the_changed_habitat_too(poles: primordia.Run) -> None:
-    free = garden(poles.opened(), each=4, games=1, ticks=400)
-    heavy = garden(poles.opened(), each=4, games=1, ticks=400, habitat={"angle_limit": 2.0})
-    for before, after in zip(free, heavy, strict=True):
-        np.testing.assert_array_equal(before.organism, after.organism)
-        assert (before.reborn != after.reborn).any()
-    with pytest.raises(InputError, match="no setting 'weight'"):
-        garden(poles.opened(), habitat={"weight": 1})
 
 
 def test_the_oldest_come_first_and_among_equals_the_last_born() -> None:
@@ -60,17 +44,12 @@ def test_the_oldest_come_first_and_among_equals_the_last_born() -> None:
     assert _oldest(rows, lifespan, 9).tolist() == [6, 8, 5, 3, 2]
 
 
-@pytest.mark.parametrize(("births", "count"), [(2, 5), (4, 3), (5, 4), (21, 5), (31, 7), (101, 20)])
-def test_the_late_born_are_in_the_middle_of_equal_parts_of_all_births_but_the_last(
-    births: int, count: int
-) -> None:
-    rows = np.arange(40, 40 + births)
-    parts = min(count, births - 1)
-    middles = [int((part + 0.5) * (births - 1) / parts) for part in range(parts)]
-    assert _spaced(rows, np.zeros(0), count).tolist() == [40 + middle for middle in middles]
-
-
-def test_a_single_late_birth_is_spaced_too() -> None:
+def test_the_late_born_are_in_the_middle_of_equal_parts_of_all_births_but_the_last() -> None:
+    for births, count in ((2, 5), (4, 3), (31, 7)):
+        rows = np.arange(40, 40 + births)
+        parts = min(count, births - 1)
+        middles = [int((part + 0.5) * (births - 1) / parts) for part in range(parts)]
+        assert _spaced(rows, np.zeros(0), count).tolist() == [40 + middle for middle in middles]
     assert _spaced(np.array([7]), np.zeros(0), 3).tolist() == [7]
 
 
@@ -78,13 +57,9 @@ def test_a_bed_keeps_the_ratio_of_its_means() -> None:
     """It keeps 9 of 12 ticks. The mean of the organisms' ratios would be another number."""
     bed = Bed("oldest", 1, np.array([4, 9]), np.array([4, 20]), np.array([8.0, 10.0]))
     assert bed.to_dict() == {
-        "group": "oldest",
-        "world": 1,
-        "organism": [4, 9],
-        "recorded": [4, 20],
-        "reborn": [8, 10],
+        "group": "oldest", "world": 1, "organism": [4, 9], "recorded": [4, 20], "reborn": [8, 10],
         "kept": 0.75,
-    }
+    }  # fmt: skip
     half = Bed("oldest", 1, np.array([4, 9]), np.array([0, 20]), np.array([8.0, 10.0]))
     assert half.kept == 0.9, "one of the two lived for no tick"
     unlived = Bed("oldest", 0, np.arange(2), np.zeros(2, int), np.ones(2))
@@ -94,16 +69,18 @@ def test_a_bed_keeps_the_ratio_of_its_means() -> None:
 def test_births_after_the_given_share_are_late(
     poles: primordia.Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """An organism's life is the mean of its games, which are cut at the given tick."""
-    asked = []
+    """An organism's life is the mean of its games, which are cut at the given tick. Founders live in
+    the changed habitat too."""
+    asked, steep = [], {"angle_limit": 2.0}
 
     def lived(players: Players, games: int, ticks: int) -> np.ndarray:
         asked.append((games, ticks))
+        assert players.habitat == changed(poles.opened().config, steep).build_habitat()
         return np.add.outer(10 * np.arange(len(players.genomes)), np.arange(games))
 
     monkeypatch.setattr(module, "lifespans_in_games", lived)
     lives = poles.lives()
-    found = garden(poles.opened(), each=7, after=0.8, games=4, ticks=77)
+    found = garden(poles.opened(), each=7, after=0.8, games=4, ticks=77, habitat=steep)
     assert asked == [(4, 77)] * 3
     for bed in found[:4]:
         births = (lives.world == bed.world).sum()

@@ -17,16 +17,13 @@ from primordia.assays import shadow as module
 from primordia.assays.shadow import Shadow, _lifespans, _sample, shadow
 from primordia.comparison.resample import resamples
 from primordia.errors import InputError
-from primordia.history.climate import Climates, PastClimate
 from primordia.law.metabolism import Rates
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
-from primordia.runs import loop
 from primordia.runs.lives import Lives
 from primordia.settings.islands import Islands
 from tests.commands import complains, here
 from tests.synthetic import worlds_of
-from tests.worlds import MEADOW, config
 
 
 def six_worlds(folder: Path, **settings: Any) -> primordia.Run:
@@ -68,14 +65,6 @@ def test_nothing_is_found_where_children_inherit_nothing(tmp_path: Path) -> None
     assert found.ratio_interval[0] < 1 < found.ratio_interval[1]
 
 
-@pytest.mark.slow
-def test_nothing_is_found_where_only_accidents_kill(tmp_path: Path) -> None:
-    loop.start(config(MEADOW, hazard=0.05, seeds=5, stop={"ticks": 200}), tmp_path / "run")
-    found = primordia.load(tmp_path / "run").shadow(20, 50)
-    assert (found.original == found.shadow).all()
-    assert (found.longer, found.p, found.ratio) == ((0, 0), 1.0, 1.0)
-
-
 def test_a_life_is_the_same_beside_any_others(poles: primordia.Run) -> None:
     run = poles.opened()
     rows = np.flatnonzero(run.lives.rank < 60)[::6]
@@ -86,22 +75,6 @@ def test_a_life_is_the_same_beside_any_others(poles: primordia.Run) -> None:
         np.testing.assert_array_equal(alone, together[1::2])
 
 
-def test_a_life_has_the_climate_of_its_birth(
-    poles: primordia.Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    run, asked = poles.opened(), []
-    found = PastClimate.of_lives
-
-    def of_lives(self: PastClimate, lives: Lives, ticks: np.ndarray) -> Climates:
-        asked.append((lives.id.tolist(), ticks.tolist()))
-        return found(self, lives, ticks)
-
-    monkeypatch.setattr(PastClimate, "of_lives", of_lives)
-    rows = np.flatnonzero(run.lives.rank < 60)[::6]
-    _lifespans(run, rows, True, 100)
-    assert asked[0] == (run.lives.id[rows].tolist(), run.lives.born[rows].tolist())
-
-
 @given(st.lists(st.tuples(st.integers(1, 9), st.integers(1, 9)), min_size=1, max_size=30))
 def test_the_sign_test_is_the_binomial_test(pairs: list[tuple[int, int]]) -> None:
     found = of([[one] for one, _ in pairs], [[other] for _, other in pairs])
@@ -110,15 +83,6 @@ def test_the_sign_test_is_the_binomial_test(pairs: list[tuple[int, int]]) -> Non
     expected = binomtest(more, more + fewer).pvalue if more + fewer else 1.0
     assert found.p == pytest.approx(expected)
     assert (found.ratio_interval is None) == (len(pairs) < 5)
-
-
-def test_means_are_taken_world_by_world() -> None:
-    found = of([[10, 30], [40]], [[10, 10], [20]], cut=40)
-    assert [mean.tolist() for mean in found.means] == [[20, 40], [10, 20]]
-    assert found.ratio == 2
-    told = found.to_dict()
-    assert told["original"] == {"mean": pytest.approx(80 / 3), "reached_cut": 1}
-    assert told["ticks"] == 80 + 40
 
 
 def test_numbers_over_worlds_are_medians_of_their_ratios() -> None:
@@ -173,10 +137,7 @@ def test_lives_are_cut_at_the_age_of_saturation_or_at_a_given_one(
     lives = worlds_of([(k, 0, True) for k in range(10)], [(3, 1, True)] * 4, until=50)
     lives.inherited[[0, 1, 2, 10, 11, 12]] = True
     run: Any = SimpleNamespace(
-        config=SimpleNamespace(saturation_ticks=77),
-        lives=lives,
-        path=Path("runs/a"),
-        made_on="cpu",
+        config=SimpleNamespace(saturation_ticks=77), lives=lives, path=Path("runs/a"), made_on="cpu"
     )
     found = shadow(run)
     assert (found.name, found.births, found.cut) == ("a", 8, 77)
@@ -205,14 +166,6 @@ def test_the_command_prints_what_python_gives(poles: primordia.Run) -> None:
     complains(here("shadow", poles.path.parent / "no"), 2, "no")
 
 
-@pytest.mark.slow
-def test_organisms_are_spread_over_all_births(poles: primordia.Run) -> None:
-    """Each world gives the number asked for, or all that it has."""
-    lives = poles.lives()
-    assert len(poles.shadow(10**6, 1).world) == len(lives) - 6  # the last of each world is left out
-    assert np.bincount(poles.shadow(3, 1).world).tolist() == [3] * 6
-
-
 @pytest.mark.parametrize("redrawn", [False, True])
 def test_an_organism_is_born_again_with_keys_of_its_world_and_birth_number(
     redrawn: bool, monkeypatch: pytest.MonkeyPatch
@@ -222,14 +175,18 @@ def test_an_organism_is_born_again_with_keys_of_its_world_and_birth_number(
     lives.id[:] = [3, 5, 8, 9, 3, 4, 7]
     rows, seeds = np.array([1, 3, 4, 6]), np.array([40, 2**63], np.uint64)
     climate = {f"metabolism.{name}": np.arange(4.0) for name in Rates._fields}
-    past = SimpleNamespace(of_lives=lambda *_: climate)
     asked: list[Any] = []
+
+    def of_lives(births: Lives, ticks: np.ndarray) -> dict[str, np.ndarray]:
+        assert births.id.tolist() == [5, 9, 3, 7]
+        assert ticks.tolist() == births.born.tolist(), "the climate is that of the birth"
+        return climate
 
     def genomes(*given: Any) -> str:
         asked.append(given[1:])
         return "genomes"
 
-    monkeypatch.setattr(module, "PastClimate", lambda _: past)
+    monkeypatch.setattr(module, "PastClimate", lambda _: SimpleNamespace(of_lives=of_lives))
     monkeypatch.setattr("primordia.history.pedigree.genomes", genomes)
     monkeypatch.setattr(module, "lifespans", lambda players, cut: (players, cut))
     run: Any = SimpleNamespace(

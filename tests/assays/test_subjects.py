@@ -22,26 +22,6 @@ CHOSEN = [9, 58, 107, 248, 315, 424, 436, 153, 408, 323, 53, 346, 133, 276, 105,
 """The longest-lived founders of CartPole-survival, by which tables of experiments name them."""
 
 
-def test_without_numbers_the_champions_live(poles: primordia.Run) -> None:
-    subjects = of_run(poles.opened())
-    champions = poles.champions()
-    assert subjects.organism.tolist() == [each.id for each in champions]
-    assert subjects.world.tolist() == [0, 1]
-    for genome, champion in zip(subjects.players.genomes, champions, strict=True):
-        np.testing.assert_array_equal(genome, champion.genome())
-
-
-def test_a_file_gives_the_genomes_that_were_exported(poles: primordia.Run, tmp_path: Path) -> None:
-    file, chosen = tmp_path / "some.safetensors", (0, 5, 9)
-    poles.export(file, *chosen)
-    subjects = of_file(file, (2, 0))
-    assert subjects.config.task == "CartPole-survival"
-    assert subjects.names == ["2 of world 0", "0 of world 0"]
-    expected = of_run(poles.opened(), [(9, 0), (0, 0)]).players.genomes
-    np.testing.assert_array_equal(subjects.players.genomes, expected)
-    assert len(of_file(file).organism) == 3
-
-
 def test_a_file_must_hold_the_genome_and_say_its_task(poles: primordia.Run, tmp_path: Path) -> None:
     file = tmp_path / "one.safetensors"
     poles.export(file, 0)
@@ -58,27 +38,18 @@ def test_a_file_must_hold_the_genome_and_say_its_task(poles: primordia.Run, tmp_
         of_file(file, task="Hopper-survival")
 
 
-@pytest.mark.parametrize(
-    "named", ["gym:evil:Pond-v0", "gymnax:evil:Pond", "evil.toml", "/etc/passwd"]
-)
 def test_a_file_chooses_no_code_and_no_other_file(
-    named: str, poles: primordia.Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    poles: primordia.Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "evil.py").write_text("open('executed', 'w')")
     (tmp_path / "evil.toml").write_text("task = 'evil'\nhabitat = {name = 'evil:Pond'}")
     layout, file = poles.opened().layout, tmp_path / "one.safetensors"
-    genomes.write(file, layout, np.zeros((1, layout.length), np.float32), {"task": named})
-    with pytest.raises(
-        InputError, match=f"'{named}', which is no task of Primordia; name the task"
-    ):
-        of_file(file)
-    assert not (tmp_path / "executed").exists()
-
-
-def test_a_changed_habitat_must_have_the_setting(poles: primordia.Run) -> None:
-    with pytest.raises(InputError, match="no setting 'gravity'"):
-        of_run(poles.opened(), habitat={"gravity": 1.0})
+    for named in ("gym:evil:Pond-v0", "evil.toml", "/etc/passwd"):
+        genomes.write(file, layout, np.zeros((1, layout.length), np.float32), {"task": named})
+        with pytest.raises(InputError, match=f"'{named}', which is no task of Primordia; name the"):
+            of_file(file)
+        assert not (tmp_path / "executed").exists()
 
 
 @pytest.mark.slow
@@ -152,8 +123,12 @@ def test_organisms_of_a_run_keep_their_order_worlds_and_present_climate(
     assert found.config.habitat["angle_limit"] == 5
     assert found.players.habitat == found.config.build_habitat()
     assert found.source == str(run.path)
+    champions = [(each.id, each.world) for each in poles.champions()]
+    assert list(zip(*of_run(run)[3:5], strict=True)) == champions, "if none are named"
     with pytest.raises(InputError, match="an organism is given twice"):
         of_run(run, [(4, 1), (9, 0), (4, 1)])
+    with pytest.raises(InputError, match="no setting 'gravity'"):
+        of_run(run, habitat={"gravity": 1.0})
 
 
 def test_a_run_in_which_nothing_was_born_since_the_fork_has_no_champion(
@@ -174,6 +149,9 @@ def test_genomes_of_a_file_play_games_of_their_own_numbers(
     file = tmp_path / "some.safetensors"
     poles.export(file, 0, 5, 9)
     whole, some = of_file(file), of_file(file, (2, 0), habitat={"angle_limit": 5.0})
+    expected = of_run(poles.opened(), [(9, 0), (0, 0)]).players.genomes
+    np.testing.assert_array_equal(some.players.genomes, expected)
+    assert some.names == ["2 of world 0", "0 of world 0"]
     keys = to_host(whole.players.keys)
     np.testing.assert_array_equal(to_host(some.players.keys), keys[[2, 0]])
     assert len(np.unique(keys)) == 3
@@ -210,11 +188,3 @@ def test_a_task_of_your_own_gives_its_seed_to_the_games(
         assert (own.config.cells, own.config.seed) == (12, 5)
         assert (to_host(own.players.keys) != to_host(usual.players.keys)).all()
     assert of_task(str(mine), (0,)).organism.tolist() == [0]
-
-
-@pytest.mark.parametrize(("same", "games"), [(True, 1), (False, 6)])
-def test_a_game_that_is_always_the_same_is_played_once(same: bool, games: int) -> None:
-    players: Any = SimpleNamespace(deterministic=same)
-    empty: Any = None
-    found = subjects.Subjects("", empty, players, empty, empty, empty, empty)
-    assert (found.games(6), found.games(2)) == (games, min(games, 2))

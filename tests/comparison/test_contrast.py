@@ -40,25 +40,6 @@ def test_delta_counts_pairs_whose_order_is_known(run: list, reference: list) -> 
     assert effect.decided == pytest.approx(decided / pairs)
 
 
-@given(SOME, SOME)
-def test_delta_changes_sign_when_the_runs_are_swapped(run: list, reference: list) -> None:
-    one, other = figures(run), figures(reference)
-    assert contrast(one, other).delta == -contrast(other, one).delta
-    assert contrast(one, one).delta == 0
-    assert contrast(one, one).word in ("negligible", None)
-
-
-@pytest.mark.slow
-@given(SOME, SOME, st.integers(1, 20))
-def test_delta_grows_with_the_figures(run: list, reference: list, by: int) -> None:
-    more = [(value + by, known) for value, known in run]
-    base = figures(reference)
-    assert contrast(figures(more), base).delta >= contrast(figures(run), base).delta
-    beyond = [(value + 20, known) for value, known in run]
-    if all(known for _, known in reference):
-        assert contrast(figures(beyond), base).delta == 1
-
-
 @given(SOME, st.lists(st.integers(0, 30), min_size=12, max_size=12))
 def test_bounds_hold_for_every_future_of_the_worlds(run: list, on: list[int]) -> None:
     later = [value + more * (not known) for (value, known), more in zip(run, on, strict=False)]
@@ -88,18 +69,6 @@ def test_a_horizon_ignores_what_happens_later(run: list, horizon: int) -> None:
     assert contrast(near, others.before(horizon)).delta == 0
 
 
-def test_intervals_contain_the_true_ratio() -> None:
-    draws = np.random.default_rng(0)
-    held = 0
-    for _ in range(200):
-        one, other = (
-            Measured(draws.lognormal(mean, 0.5, 40), np.ones(40, bool)) for mean in (1, 0)
-        )
-        low, high = contrast(one, other).interval or (0, 0)
-        held += low <= np.e <= high
-    assert 180 <= held <= 200  # of 190 expected
-
-
 @given(FEW, ENOUGH)
 def test_a_run_of_few_worlds_gives_no_interval_and_no_word(few: list, enough: list) -> None:
     """Delta and the ratio of medians describe the worlds there are, so they remain."""
@@ -109,15 +78,6 @@ def test_a_run_of_few_worlds_gives_no_interval_and_no_word(few: list, enough: li
         assert -1 <= effect.delta <= 1
     assert contrast(figures(enough), figures(enough)).word == "negligible"
     assert contrast(figures(enough), figures(enough)).interval is not None
-
-
-def test_the_fewest_worlds_are_those_whose_range_holds_the_median_nine_times_in_ten() -> None:
-    draws = np.random.default_rng(0).random((10_000, LEAST))
-    for worlds, enough in ((LEAST, True), (LEAST - 1, False)):
-        some = draws[:, :worlds]
-        held = (some.min(1) <= 0.5) & (some.max(1) >= 0.5)
-        assert held.mean() == pytest.approx(1 - 2 ** (1 - worlds), abs=0.01)
-        assert (held.mean() > 0.9) == enough
 
 
 def test_resamples_are_even_and_independent() -> None:
@@ -130,7 +90,7 @@ def test_resamples_are_even_and_independent() -> None:
     assert (drawn == other).mean() == pytest.approx(0.05, abs=0.01)
 
 
-@pytest.mark.parametrize("numbers", [1, 2_000, 19_999])
+@pytest.mark.parametrize("numbers", [1, 2_000])
 def test_resamples_do_not_depend_on_their_parts(
     numbers: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -139,17 +99,6 @@ def test_resamples_do_not_depend_on_their_parts(
     parts = list(resamples(20))
     assert len(parts) > 1
     np.testing.assert_array_equal(np.concatenate(parts), whole)
-
-
-@pytest.mark.parametrize(
-    ("delta", "word"), [(0.1, "negligible"), (0.2, "small"), (-0.4, "medium"), (-0.9, "large")]
-)
-def test_effects_have_a_word_for_their_size(delta: float, word: str) -> None:
-    share = round((1 + delta) / 2 * 100)
-    run = figures([(3, True)] * share + [(1, True)] * (100 - share))
-    effect = contrast(run, figures([(2, True)] * LEAST))
-    assert effect.delta == pytest.approx(delta, abs=0.02)
-    assert effect.word == word
 
 
 @pytest.mark.parametrize(

@@ -63,13 +63,3 @@ def test_scores_of_no_deaths_are_unknown_and_their_cells_are_empty() -> None:
     head, *rows = world_rows(COMPARED, [{"seed": np.array([8, 9])}], [ends]).splitlines()
     assert head == "arm,seed,late_deaths,late_lifespan,late_score,best_score"
     assert rows == ["only,8,0,,,5", "only,9,1,100.0,-4.0,-4"]
-
-
-def test_each_arm_has_the_last_deaths_of_its_own_worlds() -> None:
-    """The arms have different numbers of worlds."""
-    ends = [last([(100, 5)], [(110, -4)]), last([(95, 7), (99, 9)])]
-    arms = [SimpleNamespace(name=name, measured={}) for name in ("one", "two")]
-    compared: Any = SimpleNamespace(arms=arms, outcomes={})
-    seeds = [{"seed": np.array([8, 9])}, {"seed": np.array([8])}]
-    _, *rows = world_rows(compared, seeds, ends).splitlines()
-    assert rows == ["one,8,1,100.0,5.0,5", "one,9,1,110.0,-4.0,-4", "two,8,2,97.0,8.0,9"]

@@ -39,17 +39,6 @@ def test_pairs_count_where_their_order_is_known(pairs: list) -> None:
     assert within.delta == pytest.approx((larger - smaller) / len(pairs))
 
 
-@given(PAIRS)
-def test_delta_within_seeds_changes_sign_when_the_runs_are_swapped(pairs: list) -> None:
-    run, reference = both(pairs)
-    there, back = (
-        contrast(*each, in_order(pairs)) for each in ((run, reference), (reference, run))
-    )
-    assert there.paired.delta == -back.paired.delta
-    assert there.needed == back.needed
-    assert contrast(run, run, in_order(pairs)).paired.delta == 0
-
-
 @given(ENOUGH, st.data())
 def test_the_order_of_worlds_in_a_run_does_not_matter(pairs: list, data: st.DataObject) -> None:
     """Worlds are matched by their seeds."""
@@ -75,25 +64,3 @@ def test_worlds_without_pairs_are_independent() -> None:
     low, high = contrast(values, values).interval or (0, 0)
     assert low < 0.8 < 1.2 < high
     assert contrast(values, values, (np.arange(40), np.arange(40))).interval == (1, 1)
-
-
-@pytest.mark.parametrize(("shared", "width"), [(0, 1), (0.95, 0.5)])
-def test_intervals_of_pairs_hold_the_ratio_whether_or_not_worlds_are_alike(
-    shared: float, width: float
-) -> None:
-    """Where worlds are alike, intervals that take them as independent are much wider."""
-    draws, rows = np.random.default_rng(1), (np.arange(40), np.arange(40))
-    held, widths = 0, []
-    for _ in range(100):
-        common, *own = draws.standard_normal((3, 40))
-        noise = [np.sqrt(shared) * common + np.sqrt(1 - shared) * each for each in own]
-        run, reference = (
-            Measured(np.exp(mean + each / 2), np.ones(40, bool))
-            for mean, each in zip((1, 0), noise, strict=True)
-        )
-        low, high = contrast(run, reference, rows).interval or (0, 0)
-        held += low <= np.e <= high
-        least, most = contrast(run, reference).interval or (0, 0)
-        widths.append(np.log(high / low) / np.log(most / least))
-    assert 90 <= held <= 100
-    assert np.median(widths) == pytest.approx(width, abs=0.1)

@@ -56,28 +56,6 @@ def test_survival_is_the_estimate_of_kaplan_and_meier(
         assert mean == pytest.approx(restricted_mean(lived, limit))
 
 
-@given(LIVED, st.integers(0, 20), st.integers(1, 40))
-def test_organisms_alive_at_a_fork_count_from_their_age_at_the_fork(
-    worlds: list[list[tuple[int, bool]]], begun: int, limit: int
-) -> None:
-    lives = made(worlds).recorded_since(begun)
-    assert (lives.lifespan[lives.died] > begun).all()
-    assert (lives.entered == begun).all()
-    estimate = survival(lives, len(worlds), limit)
-    left = np.ones(len(worlds))
-    for age in range(limit + 1):
-        for world in range(len(worlds)):
-            in_world = lives.of_world(world)
-            at_risk = ((in_world.entered < age) & (in_world.lifespan >= age)).sum()
-            died = (in_world.died & (in_world.lifespan == age)).sum()
-            left[world] *= 1 - died / max(at_risk, 1)
-        if age in estimate.ages:
-            which = estimate.ages.tolist().index(age)
-            assert (estimate.at_risk[:, which] >= estimate.deaths[:, which]).all()
-            each = np.cumprod(1 - estimate.deaths / np.maximum(estimate.at_risk, 1), axis=1)
-            np.testing.assert_allclose(each[:, which], left, atol=1e-12)
-
-
 def test_the_band_is_that_of_resampled_worlds() -> None:
     draws = np.random.default_rng(1)
     worlds = [

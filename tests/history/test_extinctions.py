@@ -1,6 +1,5 @@
 """Extinctions of founders that never rose, and crashes after a rise, counted again tick by tick."""
 
-import json
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -15,11 +14,10 @@ from primordia.history import extinctions as module
 from primordia.history.extinctions import Extinctions, extinctions
 from primordia.law.world import Cause
 from primordia.runs import loop
-from primordia.runs.archive import Archive
 from primordia.runs.lives import ALIVE, Lives, joined
 from tests.commands import here
 from tests.synthetic import world_of
-from tests.worlds import CLOCKWORK, HERD, config
+from tests.worlds import HERD, config
 
 CELLS = 8
 COHORT = st.tuples(
@@ -88,17 +86,6 @@ def test_a_fork_whose_founders_are_dead_counts_the_extinction_of_their_children(
     assert extinctions([world.recorded_since(10), world], CELLS).total.tolist() == [1, 1]
 
 
-def test_the_text_of_crashes_has_the_number_of_worlds_that_crashed() -> None:
-    def text(*crashes: int) -> str:
-        return Extinctions(np.full(len(crashes), 3000), np.array(crashes)).text
-
-    assert text(0, 0) == "0"
-    assert text(0, 1, 0) == "1 in 1 world"
-    assert text(0, 1200) == "1,200 in 1 world"
-    assert text(0, 2, 3, 1) == "6 in 3 worlds"
-    assert text(*[1] * 1200) == "1,200 in 1,200 worlds"
-
-
 def words(counts: list[int]) -> dict[str, np.ndarray]:
     """Return counts as the arrays of a state."""
     low = np.array(counts, np.uint32)
@@ -138,23 +125,11 @@ def test_crashes_are_those_of_their_own_worlds() -> None:
     assert module.extinctions_of(worlds_with([5, 6], [5, 6], None)).crashes.tolist() == [0, 0]
 
 
-DYING: dict[str, Any] = {
-    **HERD,
-    "replication": 0.3,
-    "hazard": 0.15,
-    "stop": {"ticks": 1500},
-}
-
-
-@pytest.fixture(scope="module")
-def run(tmp_path_factory: pytest.TempPathFactory) -> primordia.Run:
-    """Make a run whose worlds die out often, some of them after a rise."""
-    folder = tmp_path_factory.mktemp("extinctions") / "run"
-    loop.start(config(DYING), folder)
-    return primordia.load(folder)
-
-
-def test_crashes_of_a_run_are_those_of_its_tables(run: primordia.Run, tmp_path: Path) -> None:
+def test_crashes_of_a_run_are_those_of_its_tables(tmp_path: Path) -> None:
+    """The worlds die out often, some of them after a rise."""
+    settings = {**HERD, "replication": 0.3, "hazard": 0.15, "stop": {"ticks": 1500}}
+    loop.start(config(settings), tmp_path / "run")
+    run = primordia.load(tmp_path / "run")
     born, died = (run.table(name).to_pylist() for name in ("births", "deaths"))
     seen = Extinctions(*(np.zeros(3, np.int64) for _ in range(2)))
     for number, world in enumerate(run.info()["worlds"]):
@@ -177,37 +152,4 @@ def test_crashes_of_a_run_are_those_of_its_tables(run: primordia.Run, tmp_path: 
         assert (world["extinctions"], world["crashes"]) == (len(starts), crashes)
         seen.total[number], seen.crashes[number] = len(starts), crashes
     assert 0 < seen.crashes.sum() < seen.total.sum()
-    printed = here("info", run.path).stdout
-    assert "times after half of the cells were full" in printed
-    twin = tmp_path / "twin"
-    loop.start(config({**DYING, "seed": 50}), twin)
-    one, _ = json.loads(here("compare", run.path, twin, "--json", "--out", tmp_path).stdout)["runs"]
-    assert (one["extinctions"], one["crashes"]) == (seen.total.sum(), seen.crashes.sum())
-    assert seen.text in here("compare", run.path, twin, "--out", tmp_path).stdout
-
-
-def test_the_crashes_of_a_fork_are_those_since_it_was_forked(
-    run: primordia.Run, tmp_path: Path
-) -> None:
-    fork = run.fork(1400, tmp_path / "fork")
-    whole = [world["crashes"] for world in run.info()["worlds"]]
-    later = [world["crashes"] for world in fork.info()["worlds"]]
-    assert all(one <= all_ for one, all_ in zip(later, whole, strict=True))
-    assert sum(later) < sum(whole)
-
-
-@pytest.mark.slow
-def test_founders_that_fill_a_world_and_die_out_are_no_crash(tmp_path: Path) -> None:
-    loop.start(config({**CLOCKWORK, "stop": {"ticks": 100}}), tmp_path / "run")
-    worlds = primordia.load(tmp_path / "run").info()["worlds"]
-    assert [(world["extinctions"], world["crashes"]) for world in worlds] == [(3, 0)] * 2
-
-
-def test_lives_are_not_read_where_nothing_died_out(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """To look at many runs must not mean to read all their lives."""
-    loop.start(config({**HERD, "stop": {"ticks": 5}}), tmp_path / "run")
-    unread = property(lambda _: pytest.fail("lives are read"))
-    monkeypatch.setattr(Archive, "lives", unread)
-    assert module.extinctions_of(Archive(tmp_path / "run")).crashes.tolist() == [0, 0, 0]
+    assert "times after half of the cells were full" in here("info", run.path).stdout

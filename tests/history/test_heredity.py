@@ -47,14 +47,6 @@ def test_pairs_with_a_living_organism_have_no_slope_yet() -> None:
     assert found.selection is None
 
 
-def test_shares_have_their_bounds_at_a_tenth_and_a_third() -> None:
-    spans = [110, 109, 100, 67, 66, 60]
-    found = measured(lives((-1, FOUNDER, 100), *((0, MUTANT, span) for span in spans)))
-    assert found.mutants.longer == pytest.approx(1 / 6)
-    assert found.mutants.as_long == pytest.approx(1 / 6)
-    assert found.mutants.shorter == pytest.approx(2 / 6)
-
-
 def test_only_late_children_count() -> None:
     rows = [(-1, FOUNDER, 10), *((0, COPY, 10) for _ in range(9))]
     assert measured(lives(*rows), 0.5).both.pairs == 5
@@ -96,13 +88,6 @@ def test_selection_and_transmission_add_up_to_the_change(world: Lives, after: fl
     z = np.log(world.lifespan)
     change = z[children].mean() - z[counted].mean()
     assert selection + transmission == pytest.approx(change, abs=1e-9)
-
-
-def test_where_the_long_lived_have_more_children_selection_is_above_zero() -> None:
-    rows = [(-1, FOUNDER, 10), (-1, FOUNDER, 1000), *((1, COPY, 1000) for _ in range(4))]
-    found = measured(lives(*rows, *((2, MUTANT, 10) for _ in range(3))))
-    assert found.selection > 0.5
-    assert found.transmission < 0
 
 
 def test_each_world_has_its_own_measures() -> None:

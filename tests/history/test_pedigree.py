@@ -11,7 +11,7 @@ from primordia.history.rebuilding import rebuild
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.history.larders import FED
-from tests.worlds import HERD, config
+from tests.worlds import config
 
 NOTED = {
     **FED,
@@ -62,33 +62,6 @@ def test_a_redrawn_genome_is_another_one_and_always_the_same(noted: Path) -> Non
     some = rows[5::17]
     assert genomes(run, some, redrawn=True).tobytes() == redrawn[some].tobytes()
     assert redrawn.std() == pytest.approx(recorded.std(), rel=0.5)
-
-
-def test_redrawn_genomes_do_not_depend_on_recorded_notes(
-    noted: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A redrawn child mutates by the redrawn notes of its parent; the recorded ones were selected."""
-    run = Archive(noted)
-    rows = np.arange(len(run.lives))
-    redrawn = genomes(run, rows, redrawn=True)
-    monkeypatch.setattr(Archive, "notes_of", lambda _, lives: np.full((len(lives), 1), 7, np.int32))
-    assert genomes(Archive(noted), rows, redrawn=True).tobytes() == redrawn.tobytes()
-
-
-@pytest.mark.slow
-def test_a_redrawn_child_differs_from_its_redrawn_parent_as_mutations_do(tmp_path: Path) -> None:
-    settings = {
-        "mutation": {"probability": 1.0, "scale": 0.02},
-        "hazard": 0.03,
-        "replication": 0.3,
-    }
-    loop.start(config(HERD, stop={"ticks": 100}, **settings), tmp_path / "run")
-    run = Archive(tmp_path / "run")
-    children = np.flatnonzero(run.lives.parent_row >= 0)
-    parents = run.lives.parent_row[children]
-    made = genomes(run, np.arange(len(run.lives)), redrawn=True)
-    assert (made[children] - made[parents]).std() == pytest.approx(0.02, rel=0.1)
-    assert made[run.lives.parent < 0].std() == pytest.approx(0.01, rel=0.3)
 
 
 def test_organisms_that_were_alive_at_a_fork_keep_their_genomes(forked: Path) -> None:

@@ -50,15 +50,6 @@ def test_rates_are_deaths_over_ticks_lived(
         )
 
 
-@given(last=st.integers(0, 10**7))
-def test_bins_start_at_0_rise_and_end_with_the_last_tick(last: int) -> None:
-    edges = series.bins(last)
-    assert edges[0] == 0
-    assert edges[-1] == max(last, 1)
-    assert (np.diff(edges) > 0).all()
-    assert (np.diff(series.middle(edges)) > 0).all()
-
-
 def test_bins_are_five_for_each_factor_of_ten() -> None:
     assert series.bins(100).tolist() == [0, 1, 2, 3, 4, 6, 10, 16, 25, 40, 63, 100]
     assert series.bins(70).tolist() == [0, 1, 2, 3, 4, 6, 10, 16, 25, 40, 63, 70]
@@ -71,7 +62,7 @@ def test_the_middle_of_a_bin_is_that_of_its_ticks_on_a_logarithmic_axis() -> Non
     np.testing.assert_allclose(middle, [1, 2, np.sqrt(3 * 10)])
 
 
-@pytest.mark.parametrize("last", [1, 999, 10**6])
+@pytest.mark.parametrize("last", [1, 10**6])
 def test_curves_have_points_at_even_distances_on_a_logarithmic_axis(last: int) -> None:
     ticks = series.moments(last)
     assert ticks.tolist() == sorted({round(last ** (k / 999)) for k in range(1000)})

@@ -101,13 +101,6 @@ def test_a_world_in_which_nothing_is_known_says_so() -> None:
     assert (found.as_good, found.advantage) == (None, None)
 
 
-@pytest.mark.parametrize(
-    ("p", "v", "s", "held"), [(0.5, 0, 2, 1), (0.1, 0, 1.2, 1.08), (1, 1, 3, 3)]
-)
-def test_the_threshold_is_eigens(p: float, v: float, s: float, held: float) -> None:
-    assert Threshold(0, p, v, s).held == pytest.approx(held)
-
-
 def test_stretches_of_births_are_measured_one_by_one() -> None:
     """A half of the first family's mutants are as good, all of the second's."""
     first: list = [(-1, FOUNDER, 100), *((-1, FOUNDER, 1) for _ in range(100))]
@@ -157,16 +150,6 @@ def test_mutants_that_outlive_copies_count_as_equally_good() -> None:
     assert measured(lives(*rows, *copies, *better)).as_good == 1
     none: list = [(0, COPY, 1)] * 10
     assert measured(lives(*rows, *none, *better)).as_good is None
-
-
-def test_pairs_are_complete_once_both_are_dead() -> None:
-    rows: list = [(-1, FOUNDER, 9), (-1, FOUNDER, 9, "alive")]
-    rows += [(0, COPY, 5), (0, MUTANT, 5, "alive"), (1, COPY, 5), (1, COPY, 5, "alive")]
-    found = families(lives(*rows), 0.0)
-    assert found.complete.tolist() == [True, False, False, False]
-    assert found.child.tolist() == [2, 3, 4, 5]
-    assert found.parent.tolist() == [0, 0, 1, 1]
-    assert found.mutant.tolist() == [False, True, False, False]
 
 
 def test_organisms_alive_at_a_fork_are_parents_but_no_births() -> None:

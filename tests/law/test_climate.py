@@ -4,12 +4,10 @@ from functools import partial
 from typing import Any
 
 import jax
-import jax.numpy as jnp
 import numpy as np
-import pytest
 
 from primordia.law.law import Law
-from primordia.law.metabolism import ONE, Rates
+from primordia.law.metabolism import ONE
 from primordia.law.seasons import apply_seasons, ratchets
 from primordia.law.world import World, Worlds
 from primordia.random.wide import to_host, wide
@@ -47,25 +45,25 @@ def applied(law: Law, world: World, running: tuple[bool, ...] = (True,) * W) -> 
     return worlds, changed.tolist()
 
 
-@pytest.mark.parametrize(
-    ("when", "quantities"),
-    [
-        ("saturation", [4 / 8, 5 / 8, 6 / 8]),
-        ("mean_age", [10.0] * 3),
-        ("food", [0.25, 1 / 6, -1 / 200]),
-    ],
-)
-def test_a_ratchet_turns_above_its_threshold_and_not_at_it(
-    when: str, quantities: list[float]
-) -> None:
-    first = quantities[0]
-    for above in (first, first - 1 / 1024):
-        law = meadow_law(ratchet(when, above))
-        worlds, changed = applied(law, posed(law, [[0]] * W))
-        assert changed == [quantity > above for quantity in quantities]
-        expected = [0.025 if turned else 0.05 for turned in changed]
-        np.testing.assert_array_equal(worlds.climate["replication"], np.float32(expected))
-        assert worlds.looks.wait.tolist() == [[20]] * W
+SETTINGS = {"saturation": "replication", "mean_age": "metabolism.gain", "food": "hazard"}
+"""The setting of the ratchet that looks at each quantity."""
+
+
+def test_a_ratchet_turns_above_its_threshold_and_not_at_it() -> None:
+    """The first world is at all thresholds. Of two equal ratchets, those of saturation, both turn."""
+    above = {"saturation": 4 / 8, "mean_age": 10.0, "food": 1 / 4}
+    every = [ratchet(when, above[when], name) for when, name in SETTINGS.items()]
+    law = meadow_law(every[0], *every, hazard=0.5)
+    (organisms, worlds) = posed(law, [[0] * 4] * W)
+    born = wide(np.repeat([TICK - 10, TICK - 9, TICK - 11], N))
+    worlds = worlds._replace(food=wide([100 * ONE, -ONE, 51 * ONE]))
+    worlds, changed = applied(law, World(organisms._replace(born=born), worlds))
+    turned = {"saturation": [1, 0.25, 0.25], "mean_age": [1, 1, 0.5], "food": [1, 1, 0.5]}
+    assert changed == [False, True, True]
+    for when, name in SETTINGS.items():
+        expected = np.float32(dict(law.beginning)[name]) * np.float32(turned[when])
+        np.testing.assert_array_equal(worlds.climate[name], expected, name)
+    assert worlds.looks.wait.tolist() == [[20] * 4] * W
 
 
 def test_a_ratchet_that_is_due_looks_at_the_food_since_its_own_last_look() -> None:
@@ -88,12 +86,12 @@ def test_a_ratchet_that_is_due_looks_at_the_food_since_its_own_last_look() -> No
 
 
 def test_schedules_are_due_in_their_own_tick_only() -> None:
-    for at in (TICK - 1, TICK, TICK + 1):
-        season = {"kind": "schedule", "setting": "hazard", "at": at, "value": 0.25}
-        law = meadow_law(season)
-        worlds, changed = applied(law, posed(law, [[]] * W))
-        assert changed == [at == TICK] * W
-        assert worlds.climate["hazard"].tolist() == [0.25 if at == TICK else 0.0] * W
+    law = meadow_law({"kind": "schedule", "setting": "hazard", "at": TICK, "value": 0.25})
+    world = posed(law, [[]] * W)
+    ticks = world.worlds._replace(tick=wide([TICK - 1, TICK, TICK + 1]))
+    worlds, changed = applied(law, world._replace(worlds=ticks))
+    assert changed == [False, True, False]
+    assert worlds.climate["hazard"].tolist() == [0.0, 0.25, 0.0]
 
 
 def test_a_law_has_a_hazard_at_its_beginning_or_in_a_season() -> None:
@@ -114,23 +112,3 @@ def test_a_law_knows_which_settings_a_season_changes() -> None:
     assert scales == [f"mutation.blocks.{name}.scale" for name in law.heredity.layout.names]
     for unknown in ("cells", "metabolism.speed", "mutation.founder_scale", "mutation"):
         assert law.governed(unknown) == []
-
-
-def test_cells_have_the_settings_of_their_world() -> None:
-    law = meadow_law()
-    climate = {"hazard": jnp.array([0.1, 0.2, 0.3]), "replication": jnp.array([1.0, 2.0, 3.0])}
-    everywhere = law.in_cells(climate)
-    some = law.in_cells(climate, jnp.array([0, 7, 8, 23, 15]))
-    for name, values in climate.items():
-        np.testing.assert_array_equal(everywhere[name], np.repeat(np.asarray(values), N))
-        np.testing.assert_array_equal(some[name], np.asarray(values)[[0, 0, 1, 2, 1]])
-    assert law.cell_numbers.tolist() == [*range(N)] * W
-    assert law.per_cell(jnp.arange(W)).tolist() == [0] * N + [1] * N + [2] * N
-    assert law.by_world(jnp.arange(2 * W * N).reshape(-1, 2)).shape == (W, N, 2)
-
-
-def test_the_metabolism_takes_its_own_settings_from_the_climate() -> None:
-    names = "store", "drain", "gain", "effort_cost", "cap"
-    climate = {f"metabolism.{name}": name for name in reversed(names)} | {"gain": "other"}
-    assert Rates.of(climate)._asdict() == {name: name for name in names} | {"price": None}
-    assert Rates.of(climate | {"replication.price": 3}).price == 3

@@ -2,19 +2,16 @@
 
 from typing import Any
 
-import jax.numpy as jnp
+import jax
 import numpy as np
-import pytest
 from jax import Array
 
 from primordia.brains.contract import Brain
-from primordia.brains.linear import Linear
 from primordia.brains.plastic import Plastic
-from primordia.config import load
 from primordia.habitats.contract import Compound, Continuous, Discrete
 from primordia.law.efference import Efferent
 from primordia.law.metabolism import ONE
-from primordia.testing import check_brain
+from tests.worlds import law_of
 
 SENSES = 2
 PARTS = Compound((Discrete(3), Continuous(2)))
@@ -37,43 +34,28 @@ class Witness(Brain):
         return senses, genome["output"] + senses[:, :1]
 
 
-@pytest.mark.parametrize(
-    ("action", "outputs", "command"),
-    [
-        (Discrete(3), [0.5, 2.0, 2.0], [0, 1, 0]),
-        (Continuous(2), [0.5, -3.0], np.tanh([0.5, -3.0])),
-        (PARTS, [0.1, 0.2, 0.3, -1.0, 1.0], [0, 0, 1, *np.tanh([-1.0, 1.0])]),
-    ],
-)
-def test_the_last_senses_and_the_last_command_are_perceived(
-    action: Any, outputs: list[float], command: list[float]
-) -> None:
-    brain = Efferent(inner=Witness(), action=action)
-    size = action.size
+def test_the_last_senses_and_the_last_command_are_perceived() -> None:
+    """The first of equal outputs is the choice. Amounts are perceived as their tanh."""
+    brain, size = Efferent(inner=Witness(), action=PARTS), PARTS.size
     assert brain.layout(SENSES, size).blocks == (("output", (size,)),)
-    genome = {"output": jnp.array([outputs], jnp.float32)}
-    memory = jnp.zeros((1, brain.memory(SENSES, size)))
+    think = jax.jit(brain.__call__)
+    genome = {"output": np.array([[0.1, 0.3, 0.3, -1.0, 1.0]], np.float32)}
+    memory = np.zeros((1, brain.memory(SENSES, size)), np.float32)
     first, second = np.array([[0.0, 7]], np.float32), np.array([[0.0, 9]], np.float32)
-    memory, output = brain(genome, memory, first)
+    memory, output = think(genome, memory, first)
     np.testing.assert_array_equal(output, genome["output"])
     np.testing.assert_array_equal(memory[0, : 2 * SENSES + size], [0, 7] + [0] * (SENSES + size))
-    memory, _ = brain(genome, memory, second)
-    perceived = [0, 9, 0, 7, *command]
+    memory, _ = think(genome, memory, second)
+    perceived = [0, 9, 0, 7, 0, 1, 0, *np.tanh([-1.0, 1.0])]
     np.testing.assert_allclose(memory[0, : 2 * SENSES + size], perceived, rtol=1e-6)
 
 
 def test_pictures_show_what_the_inner_brain_remembers() -> None:
     brain, size = Efferent(inner=Witness(), action=PARTS), PARTS.size
-    memory = jnp.arange(2.0 * brain.memory(SENSES, size)).reshape(2, -1)
-    (kept,) = brain.pictured(memory, SENSES, size).values()
+    memory = np.arange(2.0 * brain.memory(SENSES, size)).reshape(2, -1)
+    pictured: Any = brain.pictured
+    (kept,) = pictured(memory, SENSES, size).values()
     np.testing.assert_array_equal(kept[:, 0], memory[:, : 2 * SENSES + size])
-
-
-@pytest.mark.parametrize(
-    "inner", [Linear(), pytest.param(Plastic(hidden=3), marks=pytest.mark.slow)]
-)
-def test_it_is_a_brain_like_any_other(inner: Brain) -> None:
-    check_brain(Efferent(inner=inner, action=PARTS), 3, PARTS.size)
 
 
 def test_the_price_of_learning_is_that_of_the_inner_brain() -> None:
@@ -83,39 +65,34 @@ def test_the_price_of_learning_is_that_of_the_inner_brain() -> None:
     before, after = np.random.default_rng(3).normal(size=(2, 5, length)).astype(np.float32)
     fast = np.s_[:, length - last - 3 * outputs : length - last]
     expected = 2 * np.abs(after[fast] - before[fast]).sum(axis=1)
-    found: Any = brain.spent(jnp.asarray(before), jnp.asarray(after), senses, outputs)
+    found: Any = jax.jit(brain.spent, static_argnums=(2, 3))(before, after, senses, outputs)
     np.testing.assert_allclose(found, expected, rtol=1e-5)
 
 
 def test_children_inherit_what_the_inner_brain_passes_on() -> None:
-    assert Efferent(inner=Plastic(), action=PARTS).passed_on(jnp.ones((1, 99)), 4, 5) is None
+    forgetful: Any = Efferent(inner=Plastic(), action=PARTS)
+    assert forgetful.passed_on(np.ones((1, 99)), 4, 5) is None
     brain, senses, outputs = Efferent(inner=Plastic(hidden=3, inherited=True), action=PARTS), 4, 6
     length, last = brain.memory(senses, outputs), senses + PARTS.size
     memory = np.arange(1, 2 * length + 1, dtype=np.float32).reshape(2, length)
     fast = np.s_[:, length - last - 3 * outputs : length - last]
     expected = np.zeros_like(memory)
     expected[fast] = memory[fast]
-    found: Any = brain.passed_on(jnp.asarray(memory), senses, outputs)
+    found: Any = jax.jit(brain.passed_on, static_argnums=(1, 2))(memory, senses, outputs)
     np.testing.assert_array_equal(found, expected)
 
 
-def test_without_plasticity_the_inner_brain_does_not_learn() -> None:
-    assert Efferent(inner=Linear(), action=PARTS).innate() is None
+def test_every_brain_has_the_setting() -> None:
+    laws = [law_of(brain={"kind": "linear", "efference": on}) for on in (False, True)]
+    assert [law.heredity.layout.length for law in laws] == [4 * 2, (4 + 4 + 2) * 2]
+    assert [law.memory for law in laws] == [0, 4 + 2]
+    assert [law.brain.innate() for law in laws] == [None, None], "they do not learn"
     innate: Any = Efferent(inner=Plastic(), action=PARTS).innate()
     assert innate.inner == Plastic(bound=0.0)
 
 
-def test_every_brain_has_the_setting() -> None:
-    tables = [{"kind": "linear", "efference": on} for on in (False, True)]
-    made = [load("CartPole-survival", {"brain": table}) for table in tables]
-    laws = [each.build_law(each.build_habitat()) for each in made]
-    assert [law.heredity.layout.length for law in laws] == [4 * 2, (4 + 4 + 2) * 2]
-    assert [law.memory for law in laws] == [0, 4 + 2]
-
-
 def test_energy_is_perceived_beside_an_efference_copy() -> None:
     brain = {"kind": "plastic", "efference": True, "interoception": True}
-    settings = load("CartPole-survival", {"brain": brain, "metabolism": {"store": 4.0}})
-    law = settings.build_law(settings.build_habitat())
-    perceived = law.perceived(jnp.zeros((1, law.senses - 1)), jnp.array([2 * ONE]))
+    law = law_of(brain=brain, metabolism={"store": 4.0})
+    perceived = jax.jit(law.perceived)(np.zeros((1, law.senses - 1)), np.array([2 * ONE]))
     np.testing.assert_array_equal(perceived, [[0, 0, 0, 0, 0.5]])

@@ -17,7 +17,7 @@ from primordia.law.law import Law
 from primordia.law.life import Thought, Vitals
 from primordia.law.metabolism import ONE, Rates
 from primordia.law.motor import Motor
-from primordia.law.world import Cause, Organisms, World
+from primordia.law.world import Cause, World
 from primordia.mutations.noise import noise_index
 from primordia.random.gaussian import quantiles
 from primordia.random.keys import Purpose, stream
@@ -84,16 +84,6 @@ def test_of_all_reasons_to_die_the_gravest_is_the_cause(hungry: bool) -> None:
     assert set(expected) == {-1, *of_bodies} - ({Cause.STARVED} if not hungry else set())
 
 
-def test_without_food_and_effort_only_the_drain_changes_energy() -> None:
-    vitals, none = Vitals(np.full(3, 5 * ONE, np.int32), np.array([0, 7, 9], np.int32)), np.zeros(3)
-    outcome = Outcome(np.array([False, True, False]))
-    for hungry, left in ((True, 4 * ONE), (False, 5 * ONE)):
-        after, cause = JUDGE(meadow_law(hungry), vitals, none > 0, none, outcome, RATES)
-        assert cause.tolist() == [-1, Cause.FATAL, -1]
-        assert after.energy.tolist() == [left] * 3
-        assert after.eaten.tolist() == [0, 7, 9]
-
-
 def test_food_is_counted_with_a_metabolism_and_without() -> None:
     """The food of a life is in the habitat's unit, without the gain. It may be negative."""
     vitals = Vitals(np.full(3, 5 * ONE, np.int32), np.array([0, 7, 2**30 - 65], np.int32))
@@ -156,23 +146,15 @@ def test_an_output_that_is_not_finite_is_a_fault_wherever_it_is() -> None:
     np.testing.assert_array_equal(found.action, outputs)
 
 
-def test_the_gaussian_motor_adds_noise_of_its_own_scale_to_each_output() -> None:
-    outputs = np.arange(15, dtype=np.float32).reshape(5, 3)
-    noise = quantiles()[np.asarray(NOISE(key_of(5), np.arange(5), 3))]
-    for sd in (0.0, 0.25, 2.0):
-        action = thought(Motor(kind="gaussian", sd=sd), outputs).action
-        np.testing.assert_allclose(action, outputs + sd * noise, rtol=1e-6)
-
-
-def test_the_gaussian_motor_leaves_choices_alone() -> None:
-    """A choice is the largest output, whatever the noise; only the numbers beside it have noise."""
-    outputs = np.random.default_rng(5).normal(size=(40, 5)).astype(np.float32)
-    noise = quantiles()[np.asarray(NOISE(key_of(40), np.arange(40), 5))]
-    action = Compound((Discrete(2), Continuous(1), Discrete(2)))
+def test_the_gaussian_motor_adds_noise_of_its_scale_to_numbers_and_leaves_choices_alone() -> None:
+    """A choice is the largest output, whatever the noise. Each number beside it has noise of its own."""
+    outputs = np.random.default_rng(5).normal(size=(40, 6)).astype(np.float32)
+    noise = quantiles()[np.asarray(NOISE(key_of(40), np.arange(40), 6))]
+    action = Compound((Discrete(2), Continuous(2), Discrete(2)))
     found = np.asarray(thought(Motor(kind="gaussian", sd=100.0), outputs, action).action)
     np.testing.assert_array_equal(found[:, 0], outputs[:, :2].argmax(axis=1))
-    np.testing.assert_allclose(found[:, 1], outputs[:, 2] + 100 * noise[:, 2], rtol=1e-5)
-    np.testing.assert_array_equal(found[:, 2], outputs[:, 3:].argmax(axis=1))
+    np.testing.assert_allclose(found[:, 1:3], outputs[:, 2:4] + 100 * noise[:, 2:4], rtol=1e-5)
+    np.testing.assert_array_equal(found[:, 3], outputs[:, 4:].argmax(axis=1))
 
 
 def a_world(alive: np.ndarray, hazard: list[float], replication: list[float]) -> World:
@@ -259,14 +241,6 @@ def test_thinking_costs_energy_before_anyone_starves() -> None:
     assert cause.tolist() == [-1, -1, Cause.STARVED]
 
 
-def test_a_tick_without_replication_is_quiet_although_cells_are_empty() -> None:
-    alive = np.arange(12) % 2 == 0
-    _, found = fates(a_world(alive, [0, 0], [0, 0]), alive)
-    assert not found.eventful
-    assert not tick.no_fates(meadow_law()).eventful
-    assert (tick.no_fates(meadow_law()).cause == -1).all()
-
-
 def test_food_of_a_world_is_that_of_its_active_organisms_rounded_one_by_one() -> None:
     """Negative food is subtracted. Infinite food, and food in cells that are not active, is left out."""
     active = np.array([1, 1, 1, 0, 1, 0, 1, 1, 0, 0, 0, 0], bool)
@@ -276,17 +250,3 @@ def test_food_of_a_world_is_that_of_its_active_organisms_rounded_one_by_one() ->
         (102 + 102 - 3 * ONE) % 2**64,
         (-ONE // 2 - ONE) % 2**64,
     ]
-
-
-def test_only_active_organisms_change_between_ticks() -> None:
-    def filled(number: int, which: Organisms) -> Organisms:
-        arrays = {name: np.full_like(getattr(which, name), number)
-                  for name in ("memory", "energy", "eaten")}  # fmt: skip
-        return which._replace(**arrays)
-
-    organisms = a_world(np.ones(12, bool), [0, 0], [0, 0]).organisms
-    active = np.arange(12) % 3 == 0
-    rested = tick.rest(filled(1, organisms), filled(2, organisms), jnp.asarray(active))
-    for name in ("memory", "energy", "eaten"):
-        values = np.asarray(getattr(rested, name)).reshape(12, -1)
-        assert (values == np.where(active, 2, 1)[:, None]).all(), name

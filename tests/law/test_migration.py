@@ -8,8 +8,7 @@ import pytest
 from primordia.law.placement import Placement
 from primordia.random.wide import Wide
 from primordia.settings.islands import Islands
-from tests.chance import binomial, even
-from tests.law.test_placement import ROUNDS, RULES, N, W, words
+from tests.law.test_placement import ROUNDS, N, W, words
 
 ISLANDS = Islands(("west", "middle", "east"), (0, 3, 8, N))
 MIGRATION = np.repeat(np.float32([0.25, 0.0, 1.0]), ISLANDS.sizes)
@@ -64,24 +63,12 @@ def one_by_one(rule: str, drawn: np.ndarray, wants: np.ndarray, occupied: np.nda
     return parent
 
 
-@pytest.mark.parametrize("rule", RULES)
+@pytest.mark.parametrize("rule", ["blind", "empty-only"])
 def test_placing_all_at_once_equals_placing_one_by_one(rule: str) -> None:
-    rng, drawn = np.random.default_rng(3), words(4).copy()
+    rng, drawn = np.random.default_rng(3), words(4)
     occupied = rng.random((W, N)) < rng.random((W, 1))
     wants = occupied & (rng.random((W, N)) < 0.8)
     parents = placed(rule, wants, occupied, drawn)
-    for world in range(150):
+    for world in range(W):
         alone = one_by_one(rule, drawn[:, :, world], wants[world], occupied[world])
         assert parents[world].tolist() == alone
-
-
-def test_a_child_leaves_with_its_chance_and_every_cell_is_equally_likely() -> None:
-    wants = np.zeros((W, N), bool)
-    wants[:, 1] = True
-    parents = placed("blind", wants, wants, words(5))
-    births = np.bincount(np.nonzero(parents >= 0)[1], minlength=N)
-    assert births.sum() == W
-    assert binomial(int(births[3:].sum()), W, 0.25)
-    assert births[1] == 0
-    assert even(births[[0, 2]])
-    assert even(births[3:])

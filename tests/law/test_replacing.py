@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from primordia.law.world import Cause
 from primordia.random.keys import Purpose
 from primordia.random.wide import wide
 from tests.law.test_placement import one_after_another
@@ -45,24 +44,6 @@ def parents() -> np.ndarray:
     return one_after_another("well-mixed", "replacing", words(Purpose.PLACE)[None], WANTS, ALIVE)
 
 
-def test_an_organism_that_dies_is_not_replaced_by_the_child_in_its_cell(tick: Turned) -> None:
-    """Its cause of death stays on record. An organism without a cause is replaced by the child."""
-    births, deaths = tick.births, tick.deaths
-    taken = parents() >= 0
-    expected = {
-        cell + 100: int(CAUSES[cell]) if CAUSES[cell] >= 0 else Cause.REPLACED
-        for cell in range(N)
-        if ALIVE[cell] and (CAUSES[cell] >= 0 or taken[cell])
-    }
-    assert dict(zip(deaths["id"].tolist(), deaths["cause"].tolist(), strict=True)) == expected
-    assert taken[CAUSES >= 0].any()
-    assert taken[~ALIVE].all(), "a birth in an empty cell is no death"
-    assert Cause.REPLACED in expected.values()
-    assert births["cell"].tolist() == np.flatnonzero(taken).tolist()
-    assert births["parent"].tolist() == (parents()[taken] + 100).tolist()
-    np.testing.assert_array_equal(tick.organisms.alive, taken | WANTS)
-
-
 def test_an_organism_that_is_replaced_is_a_parent_but_no_mate(tick: Turned) -> None:
     """Births are written in order of cells, so a parent may be overwritten before its child is made."""
     births, overwritten = tick.births, []
@@ -78,30 +59,3 @@ def test_an_organism_that_is_replaced_is_a_parent_but_no_mate(tick: Turned) -> N
         if parent[cell] < cell and parent[parent[cell]] >= 0:
             overwritten.append(float(parent[cell]) in weights)
     assert any(overwritten)
-
-
-@pytest.mark.parametrize("inheritance", ["parent", "founder"])
-def test_a_child_begins_with_what_its_parent_has_learned(inheritance: str) -> None:
-    """So does the child of a replaced parent. Without heredity it begins with 0; so does a founder."""
-    law = law_of(
-        MEADOW, cells=N, seeds=2, placement={"topology": "well-mixed", "rule": "replacing"},
-        brain={"kind": "plastic", "hidden": 2, "inherited": True}, inheritance=inheritance,
-    )  # fmt: skip
-    world = begun(law, np.array([SEED, 0], np.uint64), tick=TICK)
-    before = np.tile(np.arange(1, 2 * N + 1, dtype=np.float32)[:, None], law.memory)
-    world = world._replace(
-        organisms=world.organisms._replace(alive=np.append(ALIVE, [False] * N), memory=before)
-    )
-    both = np.append(WANTS, [False] * N), np.append(CAUSES, [-1] * N)
-    found = turned(law, world, *both)
-    memory, size = np.asarray(found.organisms.memory), 2 * law.outputs
-    of = parents()
-    (founder,) = np.flatnonzero(found.newborn[N:])
-    assert np.isin(np.flatnonzero(of >= 0), of).any(), "a parent is replaced"
-    learned = np.where(of >= 0, of + 1, np.arange(N) + 1)
-    expected = np.repeat(learned[:, None], size, axis=1)
-    if inheritance == "founder":
-        expected[of >= 0] = 0
-    np.testing.assert_array_equal(memory[:N, -size:], expected)
-    assert not memory[:N, :-size][of >= 0].any()
-    assert not memory[N + founder].any()

@@ -1,23 +1,15 @@
 """Seasons: settings change in the right tick, in the right world, and by the right amount."""
 
-from functools import partial
-from pathlib import Path
 from typing import Any
 
-import jax
 import numpy as np
 import pytest
 from pydantic import TypeAdapter, ValidationError
 
-import primordia
 from primordia.errors import InputError
-from primordia.habitats.contract import Habitat, HostHabitat
-from primordia.law.law import Law
-from primordia.law.metabolism import break_even
-from primordia.law.seasons import Ratchet, Season, apply_seasons
-from primordia.law.world import World, Worlds
+from primordia.law.seasons import Season
 from tests.chronicle import History
-from tests.worlds import MEADOW, MILL, MILLS, Lived, begun, config
+from tests.worlds import MILL, MILLS, Lived, config
 
 
 def schedule(setting: str, at: int, value: float) -> dict[str, Any]:
@@ -25,14 +17,8 @@ def schedule(setting: str, at: int, value: float) -> dict[str, Any]:
 
 
 def ratchet(setting: str, when: str, above: float, factor: float, every: int) -> dict[str, Any]:
-    return {
-        "kind": "ratchet",
-        "setting": setting,
-        "when": when,
-        "above": above,
-        "factor": factor,
-        "every": every,
-    }
+    return {"kind": "ratchet", "setting": setting, "when": when, "above": above, "factor": factor,
+            "every": every}  # fmt: skip
 
 
 RATCHETS = MILLS["seasons"]
@@ -109,12 +95,7 @@ def test_ratchets_turn_when_and_only_when_their_condition_holds(mills: Lived, wo
     np.testing.assert_array_equal(
         rows["mutation.blocks.recurrent.scale"], rows["mutation.blocks.input.scale"]
     )
-    for column in (
-        "hazard",
-        "metabolism.store",
-        "mutation.blocks.input.probability",
-        "metabolism.cap",
-    ):
+    for column in ("hazard", "metabolism.store", "mutation.blocks.input.probability"):
         assert len(set(rows[column].tolist())) == 1
 
 
@@ -156,100 +137,6 @@ def test_ratchets_look_at_what_the_records_say(mills: Lived, world: int) -> None
     assert rows["food"][-1] == eaten
 
 
-@pytest.mark.slow
-def test_a_season_of_a_blocks_scale_changes_that_block_only() -> None:
-    """No organism dies and all children mutate, so children can be compared with their parents."""
-    last = 40
-    values = {"cells": 128, "replication": 0.3, "placement": {"topology": "well-mixed"}}
-    mutation = {"probability": 1.0, "scale": 0.1, "blocks": {"output": {"scale": 0.2}}}
-    seasons = [
-        schedule("mutation.blocks.recurrent.scale", 8, 0.0),
-        schedule("mutation.scale", 13, 0.0),
-    ]
-    run = Lived(config(MEADOW, **values, mutation=mutation, seasons=seasons), last)
-    births, genome = run.table("births"), run.engine.state.world.organisms.genome
-    assert len(births["id"]) > 100
-    cell_of = dict(zip(births["id"].tolist(), births["cell"].tolist(), strict=True))
-    children = births["cell"][1:]
-    parents = [cell_of[int(number)] for number in births["parent"][1:]]
-    when = births["tick"][1:]
-    until = {"input": 13, "recurrent": 8, "output": last}
-    for block, scale in {"input": 0.1, "recurrent": 0.1, "output": 0.2}.items():
-        flat = np.asarray(genome[block]).reshape(128, -1)
-        change = flat[children] - flat[parents]
-        early = when <= until[block]
-        assert change[early].std() == pytest.approx(scale, rel=5 / np.sqrt(2 * change[early].size))
-        assert not change[~early].any()
-        assert early.sum() > 5
-    metrics = run.table("metrics")
-    assert metrics["tick"].tolist() == [8, 13]
-    shown = [metrics[f"mutation.blocks.{block}.scale"].tolist() for block in until]
-    np.testing.assert_array_equal(np.float32(shown), np.float32([[0.1, 0], [0, 0], [0.2, 0.2]]))
-
-
-def law_of(seasons: list[dict[str, Any]]) -> tuple[Law, Habitat | HostHabitat]:
-    made = config(MEADOW, seeds=2, seasons=seasons, metabolism={"store": 10.0})
-    habitat = made.build_habitat()
-    return made.build_law(habitat), habitat
-
-
-def applied(law: Law, world: World, running: list[bool]) -> tuple[Worlds, Any]:
-    apply = jax.jit(partial(apply_seasons, law.seasons, law.governed))
-    return apply(world, np.array(running))
-
-
-def test_two_equal_ratchets_both_turn() -> None:
-    """Each looks on its own; neither stops the other."""
-    twin = ratchet("metabolism.gain", "saturation", 0.5, 0.5, 10)
-    law, _ = law_of([twin, twin])
-    world = begun(law, np.array([1, 2]))
-    full = np.arange(32) < 16
-    looks = world.worlds.looks._replace(wait=np.zeros((2, 2), np.int32))
-    world = world._replace(
-        organisms=world.organisms._replace(alive=full), worlds=world.worlds._replace(looks=looks)
-    )
-    worlds, changed = applied(law, world, [True, True])
-    assert changed.tolist() == [True, False]
-    assert worlds.climate["metabolism.gain"].tolist() == [0.25, 1.0]
-    assert worlds.looks.wait.tolist() == [[10, 10], [10, 10]], "a look that is not over never ends"
-
-
-def test_a_world_that_has_stopped_has_no_seasons() -> None:
-    law, _ = law_of(
-        [ratchet("replication", "saturation", 0.0, 0.5, 10), schedule("hazard", 7, 0.5)]
-    )
-    world = begun(law, np.array([1, 2]), tick=7)
-    looks = world.worlds.looks._replace(wait=np.zeros((2, 1), np.int32))
-    alive = np.ones(32, bool)
-    world = world._replace(
-        organisms=world.organisms._replace(alive=alive), worlds=world.worlds._replace(looks=looks)
-    )
-    worlds, changed = applied(law, world, [True, False])
-    assert changed.tolist() == [True, False]
-    assert worlds.climate["hazard"].tolist() == [0.5, 0.0]
-    np.testing.assert_array_equal(worlds.climate["replication"], np.float32([0.025, 0.05]))
-    assert worlds.looks.wait.tolist() == [[10], [0]]
-
-
-@pytest.mark.parametrize(
-    "change",
-    [
-        {"setting": ""},
-        {"when": "energy"},
-        {"every": 0},
-        {"factor": 0.0},
-        {"above": -1.0},
-        {"kind": "never"},
-    ],
-)
-def test_impossible_seasons_are_refused(change: dict[str, Any]) -> None:
-    good = ratchet("replication", "mean_age", 1.0, 0.5, 10)
-    season = TypeAdapter(Season)
-    assert isinstance(season.validate_python(good), Ratchet)
-    with pytest.raises(ValidationError):
-        season.validate_python({**good, **change})
-
-
 @pytest.mark.parametrize(
     ("kind", "name", "accepted", "refused"),
     [
@@ -277,7 +164,6 @@ def test_values_of_seasons_are_accepted_up_to_their_bounds(
 @pytest.mark.parametrize(
     ("setting", "nearest"),
     [
-        ("metabolism.speed", ""),
         ("cells", ""),
         ("mutation.founder_scale", ""),
         ("mutation.blocks.hidden.scale", "mutation.blocks.input.scale"),
@@ -291,16 +177,3 @@ def test_a_season_of_what_seasons_cannot_change_is_refused(setting: str, nearest
     with pytest.raises(InputError, match="not a setting that seasons can change") as error:
         config(MILL, seasons=[good, season])
     assert nearest in str(error.value)
-
-
-@pytest.mark.slow
-def test_break_even_follows_the_present_settings_of_the_world(tmp_path: Path) -> None:
-    """Break-even food keeps energy constant: drain over gain, per tick and per second."""
-    season = {"kind": "schedule", "setting": "metabolism.gain", "at": 20, "value": 0.5}
-    rates = {"store": 100.0, "drain": 2.0, "gain": 4.0}
-    settings = {"metabolism": rates, "seasons": [season], "cells": 4}
-    run = primordia.run("CartPole-survival", tmp_path / "run", **settings, stop={"ticks": 10})
-    assert run.info()["break_even"] == {"food_per_tick": 0.5, "food_per_second": 25.0}
-    run.resume(ticks=30)
-    assert run.info()["break_even"] == {"food_per_tick": 4.0, "food_per_second": 200.0}
-    assert break_even(2.0, 0.0) is None

@@ -11,7 +11,7 @@ from primordia.law import events as log
 from primordia.law.law import Law
 from primordia.law.metabolism import ONE
 from primordia.law.moments import moment_due, until_due
-from primordia.law.population import lifeless, quiet_ticks, settle
+from primordia.law.population import quiet_ticks, settle
 from primordia.law.sample import note_samples
 from primordia.law.tick import no_fates
 from primordia.law.world import World
@@ -161,7 +161,7 @@ def test_a_full_running_world_is_saturated_once_after_enough_calm_ticks() -> Non
     assert to_host(worlds.saturated_births).tolist() == [3] * W
 
 
-@pytest.mark.parametrize("calm", [0, 100, 2**31 - 101, 2**31 - 100, 2**31 - 2, 2**31 - 1])
+@pytest.mark.parametrize("calm", [2**31 - 101, 2**31 - 100, 2**31 - 1])
 def test_the_count_of_calm_ticks_saturates(calm: int) -> None:
     """After 2^31 ticks without births and deaths the next settling is still ahead, not behind."""
     law, running = meadow_law(), [True, True, False]
@@ -238,11 +238,3 @@ def test_a_sample_has_each_count_of_its_own_world() -> None:
         assert {name: int(rows[name][row]) for name in expected} == expected
         assert rows["hazard"][row] == np.float32((0.1, 0.2, 0.3)[w]).view(np.uint32)
         assert rows["metabolism.store"][row] == np.float32(10).view(np.uint32)
-
-
-@pytest.mark.parametrize("population", [0, 1, 4])
-def test_worlds_without_life_are_those_that_run_without_an_organism(population: int) -> None:
-    law = meadow_law()
-    world = filled(posed(law), range(population, N))
-    assert lifeless(law, world, np.array(ALL)).tolist() == [population == 0, False, False]
-    assert not lifeless(law, world, np.array([False, True, True])).any()

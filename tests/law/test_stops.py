@@ -16,9 +16,7 @@ def calm() -> list[History]:
     return [History(run, world) for world in range(4)]
 
 
-def test_a_full_world_that_was_calm_for_long_enough_is_saturated(
-    calm: list[History],
-) -> None:
+def test_a_full_world_that_was_calm_for_long_enough_is_saturated(calm: list[History]) -> None:
     worlds = calm[0].lived.engine.state.world.worlds
     saturations = [history.saturation() for history in calm]
     expected = [moment for moment in saturations if moment is not None]
@@ -50,10 +48,3 @@ def test_each_world_stops_in_the_tick_of_its_limit(
             stopped = prefix(run.table(name), world, 3000)
             np.testing.assert_equal(stopped, free)
     assert len(set(to_host(worlds.tick).tolist())) > 1
-
-
-def test_a_limit_of_ticks_is_exact() -> None:
-    run = Lived(config(RING), 123)
-    assert to_host(run.engine.state.world.worlds.tick).tolist() == [123] * 4
-    run.advance_to(124)
-    assert to_host(run.engine.state.world.worlds.tick).tolist() == [124] * 4

@@ -1,6 +1,6 @@
 """One tick of deaths and births in invented worlds, for tests of turnover."""
 
-from functools import partial
+from functools import cache, partial
 from typing import NamedTuple
 
 import jax
@@ -15,6 +15,22 @@ from primordia.law.turnover import birth_keys, turnover
 from primordia.law.world import Organisms, World, Worlds
 from primordia.random.keys import Purpose, encrypt
 from primordia.random.wide import Wide
+from tests.worlds import MEADOW, law_of
+
+W, N = 6, 128
+
+
+@cache
+def crowd_law() -> Law:
+    """Return the law of six well-mixed worlds, whose newborn are written in batches of three.
+
+    Children have two parents, and a note that belongs to their cell. Their weights do not change.
+    """
+    return law_of(
+        MEADOW, cells=N, seeds=W, brain={"hidden": 2}, metabolism={"store": 10.0},
+        placement={"topology": "well-mixed", "rule": "empty-only"}, recombination={"unit": "row"},
+        mutation={"kind": "heritable", "belongs": "cell", "probability": 0.0, "scale": 0.0},
+    )  # fmt: skip
 
 
 class Turned(NamedTuple):
@@ -45,10 +61,7 @@ def turned(
     )
     births, deaths = (
         columns.unpacked(np.asarray(list_.rows)[: int(list_.filled)])
-        for columns, list_ in (
-            (log.births_of(law), lists.births),
-            (log.DEATHS, lists.deaths),
-        )
+        for columns, list_ in ((log.births_of(law), lists.births), (log.DEATHS, lists.deaths))
     )
     return Turned(organisms, worlds, np.asarray(newborn), births, deaths)
 
