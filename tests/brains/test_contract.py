@@ -50,15 +50,8 @@ BRAINS = {name: build(table) for name, table in TABLES.items()}
 SENSES, OUTPUTS, MOST, TICKS = 5, 3, 1024, 6
 
 QUICK = ("recurrent, biases", "feed-forward, biases", "gated, biases", "linear, biases", "plastic")
-CHECKED = ("gated, biases", "linear, biases", "plastic")
-"""`tests/engine/test_exactness.py` has brains of the other kinds."""
-each_brain = pytest.mark.parametrize(
-    "brain",
-    [
-        pytest.param(brain, id=name, marks=() if name in QUICK else pytest.mark.slow)
-        for name, brain in BRAINS.items()
-    ],
-)
+CHECKED = ("gated, biases", "plastic")
+"""`tests/engine/test_exactness.py` and `tests/testing/test_brain.py` have brains of the other kinds."""
 
 
 def minds(brain: Brain) -> tuple[dict[str, Any], Any, Any]:
@@ -79,11 +72,6 @@ def lived(brain: Brain, genome: Any, memory: Any, senses: Any) -> tuple:
     return jax.lax.scan(lambda memory, seen: brain(genome, memory, seen), memory, senses)
 
 
-def thought(brain: Brain, genome: Any, memory: Any, senses: Any) -> tuple:
-    """Think once, compiled; return memory (N, M) and output (N, A)."""
-    return brain(genome, memory, senses)
-
-
 @pytest.mark.parametrize(
     "brain",
     [
@@ -93,20 +81,6 @@ def thought(brain: Brain, genome: Any, memory: Any, senses: Any) -> tuple:
 )
 def test_a_brain_keeps_the_contract(brain: Brain) -> None:
     check_brain(brain, SENSES, OUTPUTS)
-
-
-@each_brain
-def test_memory_and_every_block_of_a_genome_change_what_a_brain_thinks(brain: Brain) -> None:
-    """Memory does so in brains that have one."""
-    genome, memory, senses = minds(brain)
-    think = shared(thought, brain)
-    _, output = think(genome, memory, senses[0])
-    _, other = think(genome, -memory, senses[0])
-    remembers = brain.memory(SENSES, OUTPUTS) > 0
-    assert (np.abs(np.asarray(output) - other).max() > 0.1) == remembers
-    for name, block in genome.items():
-        _, other = think({**genome, name: block + np.float32(0.5)}, memory, senses[0])
-        assert (np.asarray(output) != other).any(axis=1).mean() > 0.9, name
 
 
 def fingerprint() -> str:
@@ -182,7 +156,3 @@ def test_a_brain_that_cannot_be_made_is_an_error_that_says_why(
         build(table)
     with pytest.raises(InputError, match=f"^mill: .*{says}"):
         config({**MILL, "brain": table})
-
-
-def test_a_brain_must_say_which_weights_it_has_and_how_it_thinks() -> None:
-    assert Brain.__abstractmethods__ == {"blocks", "__call__"}

@@ -133,14 +133,6 @@ def test_the_first_block_of_a_state_that_does_not_fit_is_named_with_its_shape(
         genomes.of_state(tmp_path / "x", LAYOUT)
 
 
-def test_blocks_of_another_brain_are_named_beside_the_needed_ones(tmp_path: Path) -> None:
-    other = Layout((("input", (3, 2)), ("output", (3, 1))))
-    genomes.write(tmp_path / "x", other, numbered(2), {})
-    says = f"holds genomes of another brain: input 3x2, output 3x1; this task's brain is {NEEDS}$"
-    with pytest.raises(InputError, match=says):
-        genomes.read([str(tmp_path / "x")], LAYOUT)
-
-
 @pytest.mark.parametrize(
     ("error", "says"),
     [

@@ -31,16 +31,6 @@ def some(count: int, seed: int = 0) -> np.ndarray:
     return np.random.default_rng(seed).normal(size=(count, 60)).astype(np.float32)
 
 
-def test_genomes_that_are_written_are_read_back(tmp_path: Path) -> None:
-    one, three = some(1), some(3, seed=1)
-    for name, each in (("one", one), ("three", three)):
-        genomes.write(tmp_path / name, LAYOUT, each, {"task": "meadow"})
-    both = genomes.read([str(tmp_path / "one"), str(tmp_path / "three")], LAYOUT)
-    np.testing.assert_array_equal(both, np.concatenate([one, three]))
-    shapes = {name: block.shape for name, block in load_file(tmp_path / "three").items()}
-    assert shapes == {name: (3, *shape) for name, shape in LAYOUT.blocks}
-
-
 @given(st.integers(0, 2**64 - 1), st.integers(0, 2**64 - 1), st.integers(1, genomes.MOST_ANCESTORS))
 def test_founders_take_ancestors_in_turn(seed: int, number: int, count: int) -> None:
     assert int(modulo(wide(seed) + wide(number), count)) == (seed + number) % 2**64 % count
@@ -115,6 +105,13 @@ def test_organisms_are_exported_in_the_given_order_or_the_longest_life(
         np.testing.assert_array_equal(
             found, [ring.organism(organism).genome() for organism in organisms]
         )
+    assert genomes.about(tmp_path / two) == {"task": "meadow", "seed": "0", "organisms": "5 30"}
+    number = ring.oldest(1).id
+    assert here("export", ring.path, "--world", 1, tmp_path / "other").returncode == 0
+    about = {"task": "meadow", "seed": "1", "organisms": str(number)}
+    assert genomes.about(tmp_path / "other") == about
+    own = ring.organism(number, 1).genome()
+    np.testing.assert_array_equal(genomes.read([str(tmp_path / "other")], layout), [own])
 
 
 def broken(path: Path, kind: str) -> None:

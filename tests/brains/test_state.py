@@ -34,24 +34,17 @@ def test_a_state_dictionary_becomes_a_genome(tmp_path: Path, state: dict[str, np
 @pytest.mark.parametrize(
     ("change", "says"),
     [
-        ({"input": None}, "the block input is missing"),
         ({"input": "turned"}, "transpose the block"),
-        ({"bias": np.zeros(3)}, "bias is not a block of this task's brain, which has input"),
         ({"output": np.full((2, 32), np.nan)}, "not finite numbers"),
-        ({"output": np.full((2, 32), 1e300)}, "not finite numbers in float32"),
         ({"output": np.ones((2, 32), np.int64)}, "output has the type I64; weights have F32"),
-        ({"output": np.ones((2, 32), np.complex64)}, "output has the type C64"),
     ],
 )
 def test_what_does_not_fit_is_named(
     tmp_path: Path, state: dict[str, np.ndarray], change: dict[str, Any], says: str
 ) -> None:
     for name, value in change.items():
-        if value is None:
-            del state[name]
-        else:
-            turned = isinstance(value, str)
-            state[name] = np.ascontiguousarray(state[name].T) if turned else value
+        turned = isinstance(value, str)
+        state[name] = np.ascontiguousarray(state[name].T) if turned else value
     path = tmp_path / "state.safetensors"
     save_file(state, path)
     chosen = load(TASK)

@@ -229,7 +229,11 @@ def test_a_sparse_mutation_changes_a_share_of_the_weights_by_gaussian_noise(dens
     np.testing.assert_array_equal(table, -table[::-1])
     if density > 0.001:
         assert changed.std() == pytest.approx(1, abs=0.01)
-    genomes, mutated = children(LAYOUT, np.ones((K, P), np.float32), 1.0, 0.5, density)
+
+
+def test_children_have_the_noise_of_a_sparse_mutation() -> None:
+    table = sparse(0.01)
+    genomes, mutated = children(LAYOUT, np.ones((K, P), np.float32), 1.0, 0.5, 0.01)
     place = index(drawn()[Purpose.NOISE], np.arange(K), P)
     same_bits(genomes, 1 + table[place] * np.float32(0.5))
     assert mutated.all()
@@ -241,14 +245,6 @@ def test_founders_are_noise_of_their_blocks_scales() -> None:
     scales = np.repeat(np.array([0.3, 0.02, 0.7], np.float32), LAYOUT.sizes)
     genomes = mutation.founders(LAYOUT, Draws(drawn(), jnp.arange(K)))
     same_bits(np.asarray(genomes), noise(drawn()[Purpose.FOUNDER]) * scales)
-
-
-def test_a_copy_is_its_parent_to_the_last_bit() -> None:
-    rng = np.random.default_rng(0)
-    parents = rng.integers(0, 2**32, (K, P), dtype=np.uint64).astype(np.uint32).view(np.float32)
-    genomes, mutated = children(LAYOUT, parents, 0.0, 0.5)
-    same_bits(genomes, parents)
-    assert not mutated.any()
 
 
 SCALES, PROBABILITIES = [0.3, 0.25, 0.01], [0.0, 0.6, 0.3]

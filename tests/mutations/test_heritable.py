@@ -8,10 +8,8 @@ from primordia.law.heredity import Birth, Heredity
 from primordia.mutations.contract import Family
 from primordia.mutations.gaussian import Block, Gaussian
 from primordia.mutations.heritable import Heritable
-from primordia.mutations.lengths import length
 from primordia.random.keys import Purpose, bits
 from primordia.random.wide import wide
-from primordia.testing import check_mutation
 from tests.chance import binomial
 from tests.mutations.families import drawn, inherited, noted, rates
 from tests.mutations.test_gaussian import LAYOUT
@@ -26,9 +24,8 @@ def family(mutation: Gaussian, quarters: int = 0) -> Family:
     return Family(parents, notes, rates(mutation, LAYOUT, K), drawn(K))
 
 
-@pytest.mark.parametrize("stride", [1, 4])
-def test_the_exponent_of_a_mutant_takes_any_step_up_to_the_stride(stride: int) -> None:
-    mutation = Heritable(stride=stride, probability=0.5)
+def test_the_exponent_of_a_mutant_takes_any_step_up_to_the_stride() -> None:
+    mutation, stride = Heritable(stride=3, probability=0.5), 3
     notes = noted(mutation, LAYOUT, family(mutation, 5))
     mutants = inherited(mutation, LAYOUT, family(mutation))[1]
     assert (notes[~mutants] == 5).all()
@@ -58,21 +55,6 @@ def test_the_exponent_stays_within_its_bounds(quarters: int, bound: str) -> None
     assert inside.all()
     assert (notes == quarters).mean() == pytest.approx(5 / 9, abs=0.05)
     assert getattr(mutation, bound) == quarters
-
-
-@pytest.mark.slow
-def test_noise_is_that_of_the_gaussian_times_its_length() -> None:
-    fixed, mutation = Gaussian(probability=1.0, scale=0.5), Heritable(probability=1.0, scale=0.5)
-    base = inherited(fixed, LAYOUT, family(fixed))[0]
-    for quarters in (-4, 0, 3):
-        noise = inherited(mutation, LAYOUT, family(mutation, quarters))[0]
-        np.testing.assert_allclose(noise, base * np.asarray(length(np.int32(quarters))), rtol=1e-6)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("belongs", ["line", "cell"])
-def test_it_keeps_the_contract(belongs: str) -> None:
-    check_mutation(Heritable(belongs=belongs))
 
 
 def test_founders_begin_with_exponent_0_whatever_the_cell_held_before() -> None:

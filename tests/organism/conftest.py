@@ -51,10 +51,10 @@ def mill(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="package")
 def poles(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Make two worlds of poles, in which an organism lives long."""
+    """Make a world of poles, in which an organism lives long."""
     run = tmp_path_factory.mktemp("poles") / "run"
     stop = {"ticks": 6000, "until": "none"}
-    return primordia.run("CartPole-survival", run, cells=16, seeds=2, stop=stop).path
+    return primordia.run("CartPole-survival", run, cells=16, stop=stop).path
 
 
 @pytest.fixture(scope="package")

@@ -65,14 +65,3 @@ def test_a_file_holds_every_tick_of_every_stretch(
     found = columns(path)
     assert list(found) == list(expected)
     assert found == expected
-
-
-@pytest.mark.parametrize("suffix", diary.WRITERS)
-def test_a_vector_of_one_number_is_numbered_too(suffix: str, tmp_path: Path) -> None:
-    """Thus the names of columns do not depend on the number of senses or actions."""
-    whole = lived(21, 3)
-    narrow = whole._replace(senses=whole.senses[:, :1], action=whole.action[:, :1])
-    diary.write(tmp_path / f"life{suffix}", iter([narrow]), COUNTS)
-    found = columns(tmp_path / f"life{suffix}")
-    assert list(found)[:4] == ["tick", "senses_0", "action_0", "energy"]
-    assert (found["senses_0"], found["action_0"]) == ([21 / 8, 22 / 8, 23 / 8], [10.5, 11, 11.5])

@@ -9,25 +9,12 @@ import pytest
 
 import primordia
 from primordia.cli.evaluate import _quartiles
-from primordia.errors import InputError
-from primordia.organism.organism import Organism
 from primordia.organism.playing import games
 from primordia.organism.playing.evaluation import Evaluation, Spread, evaluate
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
 from tests.worlds import MEADOW, config
-
-
-@pytest.fixture(scope="module")
-def pong(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    pytest.importorskip("ale_py")
-    run = tmp_path_factory.mktemp("pong") / "run"
-    settings = {"cells": 6, "genesis": "fill", "mutation": {"founder_scale": 1.0}}
-    settings["habitat"] = {"workers": 0}
-    return primordia.run(
-        "Pong-survival", run, stop={"ticks": 400, "until": "none"}, **settings
-    ).path
 
 
 def games_of(ticks: list[int], over: list[bool], food: list[float]) -> games.Games:
@@ -46,22 +33,6 @@ def test_lives_and_whole_games_have_numbers_of_their_own() -> None:
         "length": {"minimum": 50, "q1": 60, "median": 70, "q3": 80, "maximum": 90},
         "cut": 3,
     }  # fmt: skip
-
-
-@pytest.mark.slow
-def test_where_nothing_is_random_an_organism_lives_its_life_again(pong: Path) -> None:
-    """The life has the same length, and one game is enough to show it."""
-    run = Archive(pong)
-    lives = run.lives
-    died = np.flatnonzero(lives.died)[:4]
-    assert len(died) == 4
-    played = primordia.load(pong).evaluate(Organism(run, row) for row in died)
-    for row, evaluation in zip(died, played, strict=True):
-        assert (evaluation.games, evaluation.distinct) == (1, 1)
-        assert evaluation.lived.ticks[0] == lives.lifespan[row]
-        assert evaluation.whole is not None
-        assert evaluation.whole.ticks[0] > lives.lifespan[row]
-        assert evaluation.whole.food[0] <= -20
 
 
 @pytest.mark.parametrize("senses", ["live", "frozen", "ignored"])
@@ -131,32 +102,11 @@ def test_one_random_game_is_not_taken_for_all_games(poles: Path) -> None:
     assert "are the same" not in champions
 
 
-@pytest.mark.slow
-def test_the_command_prints_figures_and_json(pong: Path) -> None:
-    organism = "--organism", str(primordia.load(pong).oldest().id)
-    one = here("evaluate", pong, *organism).stdout
-    assert "1 distinct game; nothing is random" in one
-    assert "All games of an organism are the same" in here("evaluate", pong, "--founders", 2).stdout
-    sticky = "--games", "3", "--sticky", "0.25", "--ticks", "300"
-    many = here("evaluate", pong, *organism, *sticky).stdout
-    assert "3 games, sticky 0.25" in many
-    assert "3 still going on when cut" in many
-    printed = json.loads(here("evaluate", pong, *organism, "--freeze-senses", "--json").stdout)
-    assert (printed["games"], printed["senses"]) == (1, "frozen")
-    assert set(printed["score"]) == {"minimum", "q1", "median", "q3", "maximum"}
-
-
 def test_a_number_alone_means_that_all_games_have_it() -> None:
     some, every = np.array([20] * 7 + [100] * 23), np.full(30, 100)
     text = "median 100 (quartiles 100, 100), minimum 20, maximum 100"
     assert _quartiles(Spread.of(some)._asdict()) == text
     assert _quartiles(Spread.of(every)._asdict()) == "100"
-
-
-def test_scores_below_one_are_not_rounded_to_nothing() -> None:
-    metres = Spread.of(np.array([0.125, 0.25, 0.375, 1234.5, -0.5]))._asdict()
-    text = "median 0.25 (quartiles 0.125, 0.375), minimum -0.5, maximum 1,234"
-    assert _quartiles(metres) == text
 
 
 def test_any_setting_of_the_habitat_is_a_flag(poles: Path) -> None:
@@ -192,8 +142,3 @@ def test_wrong_input_is_an_error_that_says_why(poles: Path) -> None:
         (("--organism", "9999999"), "no organism 9999999"),
     ):
         complains(here("evaluate", poles, *words), 2, part)
-
-
-def test_settings_that_do_not_fit_the_brain_are_refused(poles: Path) -> None:
-    with pytest.raises(InputError, match=r"1 senses and 2 actions; .* 4 senses and 2 actions"):
-        primordia.load(poles).oldest().evaluate(habitat={"senses": ["x"]})

@@ -4,20 +4,16 @@ import json
 import shutil
 from collections.abc import Callable
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
 from primordia.organism.reliving.compare import relive
-from primordia.organism.reliving.course import Course
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
 from tests.trouble import newest, reseal
@@ -95,25 +91,6 @@ def test_a_forged_death_is_noticed(
     shown = here("relive", run, chosen[0])
     assert shown.returncode == 1
     assert "NO" in shown.stdout
-
-
-@given(*(st.tuples(*[st.integers(0, 2)] * 3) for _ in range(2)))
-def test_only_a_child_born_in_its_cell_in_its_last_tick_replaces_an_organism(
-    place: tuple[int, int, int], birth: tuple[int, int, int]
-) -> None:
-    world, cell, ends = place
-    names = "world", "cell", "born"
-    lives = SimpleNamespace(
-        **{name: np.array([value]) for name, value in zip(names, birth, strict=True)}
-    )
-    life: Any = SimpleNamespace(
-        run=SimpleNamespace(lives=lives),
-        world=world,
-        record=SimpleNamespace(cell=np.array([cell])),
-        ends=ends,
-        cause=Cause.REPLACED,
-    )
-    assert Course(life).replaced == (place == birth)
 
 
 @pytest.mark.parametrize("name", ["energy", "eaten", "memory"])

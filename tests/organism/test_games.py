@@ -134,23 +134,6 @@ def test_ignored_senses_repeat_one_game_in_the_habitat_of_the_task(
         assert call["script"].ticks.tolist() == [[10, 11], [20, 21]]
 
 
-@pytest.mark.parametrize("wrong", [{"games": 0}, {"ticks": 0}, {"games": -1, "ticks": 5}])
-def test_an_evaluation_has_at_least_one_game_of_one_tick(
-    monkeypatch: pytest.MonkeyPatch, calls: list[dict[str, Any]], wrong: dict[str, int]
-) -> None:
-    with pytest.raises(InputError, match="at least one game of at least one tick"):
-        evaluated(monkeypatch, None, **wrong)
-    assert len(evaluated(monkeypatch, None, games=1, ticks=1)) == 2
-
-
-def test_distinct_games_are_counted_in_whole_games_if_there_are_any() -> None:
-    lived = played([[1, 1, 1, 1]], [[5, 5, 6, 6]]).of_player(0)
-    whole = played([[1, 1, 1, 1]], [[1, 2, 3, 3]]).of_player(0)
-    assert Evaluation(0, 0, "live", lived, None, deterministic=False).distinct == 2
-    assert Evaluation(0, 0, "live", lived, whole, deterministic=False).distinct == 3
-    assert Evaluation(0, 0, "live", whole, lived, deterministic=False).distinct == 2
-
-
 @pytest.mark.parametrize(
     ("course", "fixed", "repeats"),
     [([3], True, True), ([3], False, False), ([3, 3], False, True), ([3, 4], False, False)],
@@ -241,20 +224,6 @@ def test_a_habitat_without_declared_settings_may_have_any() -> None:
     before = config(MEADOW, habitat={"name": "tests.toys:Mirror", "inner": "meadow"})
     after: Any = changed(before, {"lifespan": 9}).build_habitat()
     assert after.inner.lifespan == 9
-
-
-def test_only_the_settings_that_are_named_change() -> None:
-    before = config("CartPole-survival", habitat={"track_limit": 7.0})
-    after = changed(before, {"angle_limit": 30.0}).build_habitat()
-    assert (after.angle_limit, after.track_limit) == (30.0, 7.0)
-    assert before.build_habitat().angle_limit == 12.0
-
-
-def test_a_setting_of_none_is_unset() -> None:
-    pytest.importorskip("ale_py")
-    before = config("Pong-survival", habitat={"mode": 1, "difficulty": 2})
-    after: Any = changed(before, {"mode": "none"}).build_habitat()
-    assert (after.mode, after.difficulty) == (None, 2)
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,6 @@ import pytest
 
 import primordia
 from primordia.engine.state import named_leaves
-from primordia.errors import InputError, Trouble
 from primordia.law.life import BODILY
 from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
@@ -19,24 +18,8 @@ from primordia.organism.organism import Organism
 from primordia.organism.reliving.instant import Stretch
 from primordia.organism.reliving.relived import ALONE, RelivedLife
 from primordia.random.wide import wide
-from primordia.runs import loop
 from primordia.runs.archive import Archive
-from tests.organism.conftest import CALM
-from tests.toys import Mirror
-from tests.worlds import MEADOW, MILLS, config
-
-MIRROR = pytest.param("mirror", marks=pytest.mark.slow)
-"""Habitats on the host are also lived in again by tests of simulators, which share a law."""
-
-
-@pytest.fixture(scope="module")
-def mirror(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Make the same run with the habitat on the host."""
-    run = tmp_path_factory.mktemp("mirror") / "run"
-    habitat = {"name": "tests.toys:Mirror", "inner": "mill"}
-    changed = {**CALM, "habitat": habitat, "seed": 5, "stop": {"ticks": 700}}
-    loop.start(config({**MILLS, **changed}), run)
-    return run
+from tests.worlds import MILLS
 
 
 def at_the_end(life: RelivedLife) -> dict[str, np.ndarray]:
@@ -64,7 +47,7 @@ def assert_ends_as_recorded(life: RelivedLife) -> list[Stretch]:
     return seen
 
 
-@pytest.mark.parametrize("which", ["mill", "poles", MIRROR])
+@pytest.mark.parametrize("which", ["mill", "poles"])
 def test_the_living_reach_their_recorded_state_when_lived_again(
     which: str, request: pytest.FixtureRequest
 ) -> None:
@@ -76,12 +59,9 @@ def test_the_living_reach_their_recorded_state_when_lived_again(
         assert_ends_as_recorded(RelivedLife.of(run, lives.id[row], lives.world[row]))
 
 
-@pytest.mark.parametrize("which", ["mill", MIRROR])
-def test_the_dead_die_in_their_recorded_tick_when_lived_again(
-    which: str, request: pytest.FixtureRequest
-) -> None:
+def test_the_dead_die_in_their_recorded_tick_when_lived_again(mill: Path) -> None:
     """They starve in the tick in which energy runs out, or die when their bodies fail."""
-    run = Archive(request.getfixturevalue(which))
+    run = Archive(mill)
     lives = run.lives
     for cause in (Cause.STARVED, Cause.FATAL):
         rows = np.flatnonzero(lives.cause == cause)[-5:]
@@ -90,15 +70,11 @@ def test_the_dead_die_in_their_recorded_tick_when_lived_again(
             assert_ends_as_recorded(RelivedLife.of(run, lives.id[row], lives.world[row]))
 
 
-@pytest.mark.parametrize("which", ["mill", MIRROR])
-def test_a_life_older_than_a_fork_continues_from_the_fork(
-    which: str, request: pytest.FixtureRequest, tmp_path: Path
-) -> None:
+def test_a_life_older_than_a_fork_continues_from_the_fork(mill: Path, tmp_path: Path) -> None:
     """This holds also for an organism born in the tick of the fork, whose body is from the old seed."""
-    run = request.getfixturevalue(which)
-    before = Archive(run).lives
+    before = Archive(mill).lives
     at = int(before.born[(before.born > 300) & (before.lifespan > 12)][0])
-    fork = Archive(primordia.load(run).fork(at, tmp_path / "fork", seed=9).path)
+    fork = Archive(primordia.load(mill).fork(at, tmp_path / "fork", seed=9).path)
     lives = fork.lives
     older = (lives.born <= at) & (lives.ended > at + 3)
     newest = older & (lives.born == at)
@@ -121,35 +97,6 @@ def test_a_second_life_of_another_length_compiles_nothing(
     assert "Finished XLA compilation" not in caplog.text
 
 
-@pytest.mark.slow
-def test_a_life_older_than_a_fork_is_refused_if_bodies_cannot_be_saved(
-    mirror: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    fork = Archive(primordia.load(mirror).fork(300, tmp_path / "fork").path)
-    lives = fork.lives
-    monkeypatch.setattr(Mirror, "exact", False, raising=False)
-    with pytest.raises(InputError, match="is older than the fork"):
-        RelivedLife.of(fork, lives.id[0], lives.world[0])
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("kind", ["Meadow", pytest.param("Mirror", marks=pytest.mark.slow)])
-def test_a_failed_simulation_is_a_fault_even_if_it_reports_death(kind: str, tmp_path: Path) -> None:
-    """It is a fault also in a tick in which an accident strikes, as it does from the ninth tick on."""
-    inner = {"inner": "meadow"} if kind == "Mirror" else {}
-    broken = {"name": f"tests.toys:{kind}", **inner, "lifespan": 9, "broken_at": 9}
-    accidents = [{"kind": "schedule", "setting": "hazard", "at": 8, "value": 1.0}]
-    loop.start(
-        config(MEADOW, habitat=broken, seasons=accidents, stop={"ticks": 30}), tmp_path / "run"
-    )
-    run = Archive(tmp_path / "run")
-    lives = run.lives
-    assert Cause.HAZARD in lives.cause
-    row = np.flatnonzero(lives.cause == Cause.FAULT)[0]
-    (seen,) = RelivedLife.of(run, lives.id[row]).stretches()
-    assert len(seen.tick) == 9
-
-
 def test_an_accident_kills_only_what_dies_of_nothing_else() -> None:
     """Neither in a tick without an accident nor in one with it does another cause change."""
     causes, none = np.array([-1, *BODILY], np.int32), np.zeros(0)
@@ -165,49 +112,15 @@ def test_an_accident_kills_only_what_dies_of_nothing_else() -> None:
     assert found.cause.tolist() == [*causes, Cause.HAZARD, *BODILY]
 
 
-@pytest.mark.parametrize("which", ["mill", MIRROR])
-def test_a_life_begins_with_the_store_in_force_in_the_tick_of_its_birth(
-    which: str, request: pytest.FixtureRequest
-) -> None:
+def test_a_life_begins_with_the_store_in_force_in_the_tick_of_its_birth(mill: Path) -> None:
     """In this past, the store is as large as the number of the tick."""
-    run = Archive(request.getfixturevalue(which))
+    run = Archive(mill)
     past = SimpleNamespace(of_lives=lambda lives, ticks: {"metabolism.store": np.float32(ticks)})
     for row in np.flatnonzero(run.lives.born > 0)[[0, 9, -1]]:
         life = RelivedLife.of(run, run.lives.id[row], run.lives.world[row])
         life.__dict__["_past"] = past
         held, _ = next(life.instants())
         assert held["world.organisms.energy"] == run.lives.born[row] * ONE
-
-
-@pytest.mark.slow
-def test_a_habitat_on_the_host_is_closed_after_a_life(
-    mirror: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """It is closed after a whole life or a part of it; each life has its own habitat."""
-    closed: list[Mirror] = []
-    monkeypatch.setattr(Mirror, "close", lambda self: closed.append(self), raising=False)
-    run = Archive(mirror)
-    row = int(np.argmax(run.lives.lifespan))
-    life = RelivedLife.of(run, run.lives.id[row], run.lives.world[row])
-    one: Any = life.stretches()
-    other = life.stretches()
-    first = next(other)
-    assert next(one).action.tobytes() == first.action.tobytes()
-    one.close()
-    assert len(closed) == 1
-    assert len(list(other)) == -(-(life.ends - life.begins) // 20) - 1 > 0
-    assert len(set(map(id, closed))) == 2
-
-
-def test_a_record_that_differs_from_the_life_is_noticed(
-    poles: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    run = Archive(poles)
-    row = int(np.flatnonzero(run.lives.died)[40])
-    life = RelivedLife.of(run, int(run.lives.id[row]))
-    life.record.ended[0] += 1
-    with pytest.raises(Trouble, match="did not repeat as recorded"):
-        list(life.stretches())
 
 
 def test_a_policy_acts_as_its_organism_did(poles: Path) -> None:
@@ -260,10 +173,3 @@ def test_an_organism_has_the_properties_that_are_recorded(poles: Path) -> None:
     later = list(by_id.values())[len(by_id) // 2 :]
     assert run.oldest(0).age == max(organism.age for organism in later)
     assert run.organism(organism.id).descent() == organism.descent()
-
-
-def test_tables_are_given_as_arrow_pandas_and_numpy(poles: Path) -> None:
-    run = primordia.load(poles)
-    arrow, arrays = run.table("births"), run.arrays("births")
-    assert arrow.to_pandas()["tick"].tolist() == arrays["tick"].tolist()
-    assert arrays["cause"][0] == "founder"

@@ -11,8 +11,6 @@ from primordia.errors import Trouble
 from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
 from primordia.organism.playing.evaluation import evaluate
-from primordia.organism.playing.games import play
-from primordia.organism.playing.players import players_of
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import loop
 from primordia.runs.archive import Archive
@@ -86,20 +84,6 @@ def test_a_record_that_differs_from_the_life_is_noticed(mill: Archive, said: str
         CHANGES[said](life)
         with pytest.raises(Trouble, match="did not repeat as recorded"):
             list(life.stretches())
-
-
-@pytest.mark.slow
-def test_a_game_counts_what_is_gathered_until_it_is_over(mill: Archive) -> None:
-    """Games of one player end at different ticks; when one is over, the others go on."""
-    players = players_of(mill, [(0, 0), (5, 0)])
-    whole = play(players, 5, 300)
-    assert whole.over.any()
-    assert len(np.unique(whole.ticks)) > 3
-    for player, game in ((0, 0), (0, 3), (1, 1), (1, 4)):
-        cut = play(players, 5, int(whole.ticks[player, game]))
-        for name in ("ticks", "over", "food", "course"):
-            value, expected = (getattr(games, name)[player, game] for games in (cut, whole))
-            assert value == expected, name
 
 
 @pytest.mark.slow

@@ -12,11 +12,13 @@ import pytest
 import primordia
 from primordia.law.law import Law
 from primordia.organism.policy import Policy
-from tests.brains.test_contract import QUICK, TABLES
+from tests.brains.test_contract import TABLES
 from tests.commands import complains, here
 from tests.worlds import MILL, config
 
 TICKS = 50
+QUICK = "recurrent, biases", "gated, biases", "plastic"
+"""Brains whose models have all operations of the others."""
 
 
 @pytest.fixture(autouse=True, scope="module")

@@ -193,7 +193,7 @@ def test_no_game_depends_on_those_that_leave_the_loop(
     players: Players, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Few players have a large store, so the other games leave the loop, with what is frozen."""
-    monkeypatch.setattr(in_jax, "FEWEST", 1)
+    monkeypatch.setattr(in_jax, "FEWEST", 16)
     store = np.geomspace(5, 75, len(players.genomes)).astype(np.float32)
     unequal = players._replace(rates=players.rates._replace(store=store))
     sizes: list[int] = []

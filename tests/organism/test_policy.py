@@ -1,14 +1,10 @@
 """A brain as a function: its weights, its memory, and the number of its senses."""
 
-from pathlib import Path
-from unittest.mock import patch
-
 import numpy as np
 import pytest
 
 from primordia.errors import InputError
 from primordia.law.law import Law
-from primordia.organism import onnx
 from primordia.organism.policy import Policy
 from tests.worlds import MILL, law_of
 
@@ -54,18 +50,3 @@ def test_a_policy_remembers_until_it_is_reset(law: Law, policy: Policy) -> None:
     assert not policy.memory.any()
     policy(senses)
     np.testing.assert_array_equal(policy.memory, first)
-
-
-def test_a_model_is_written_with_the_weights_and_the_metadata(law: Law, policy: Policy) -> None:
-    with patch.object(onnx, "write") as write:
-        policy.to_onnx("a.onnx", {"seed": "3"})
-        policy.to_onnx(Path("b.onnx"))
-    for given, expected in zip(
-        write.call_args_list, ((Path("a.onnx"), {"seed": "3"}), (Path("b.onnx"), {})), strict=True
-    ):
-        path, of, weights, about = given.args
-        assert (path, about) == expected
-        assert of is law
-        assert {name: block.tolist() for name, block in weights.items()} == {
-            name: block.tolist() for name, block in policy.weights.items()
-        }

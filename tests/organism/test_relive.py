@@ -134,18 +134,17 @@ def test_a_life_is_saved_tick_by_tick(chain: list[Path], tmp_path: Path) -> None
                                       table[name].to_numpy())  # fmt: skip
 
 
-@pytest.mark.slow
-def test_a_video_is_made_of_a_life_that_agrees(tmp_path: Path) -> None:
-    run, film = tmp_path / "run", tmp_path / "life.gif"
-    primordia.run("CartPole-survival", run, cells=8, stop={"ticks": 200, "until": "none"})
-    done = here("relive", run, 1, "--video", film)
-    assert done.returncode == 0, done.stderr
-    assert str(film) in done.stdout
+def test_a_video_is_made_of_a_life_that_agrees(poles: Path, tmp_path: Path) -> None:
+    lives = Archive(poles).lives
+    row = int(np.flatnonzero(lives.died & (lives.lifespan < 60))[0])
+    life = primordia.load(poles).organism(int(lives.id[row]))
+    film = tmp_path / "life.gif"
+    found = life.relive(film=film)
+    assert (found.agrees, found.begin, found.files) == (True, "birth", (film,))
     assert film.stat().st_size > 100
-    life = primordia.load(run).organism(1)
     life.lives.ended[life.row] -= 1  # as a forged record would say
-    found = life.relive(film=tmp_path / "other.gif")
-    assert not found.agrees
+    found = life.relive(save=tmp_path / "a.npz", film=tmp_path / "other.gif")
+    assert (found.agrees, found.files) == (False, (tmp_path / "a.npz",))
     assert not (tmp_path / "other.gif").exists()
     assert "was not made" in found.notes[-1]
 

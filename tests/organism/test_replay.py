@@ -16,7 +16,7 @@ from primordia.habitats.framed import PAPER
 from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
 from primordia.organism import video
-from primordia.organism.reliving import diary, replay
+from primordia.organism.reliving import replay
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import bundle
 
@@ -84,25 +84,6 @@ def test_if_no_age_is_left_to_show_the_error_says_which_ages_can_be_seen(
         replay.parts_of(life, ages)
 
 
-@pytest.mark.parametrize(("rate", "seconds"), [(1 / 60, None), (50.0, 0.001)])
-def test_each_end_of_a_long_life_has_a_tick_at_least(
-    rate: float, seconds: float | None, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    life: Any = SimpleNamespace(record=SimpleNamespace(born=[70]), begins=70, ends=80)
-    monkeypatch.setattr(replay, "picture_rate", lambda life: rate)
-    assert replay.parts_of(life, (None, None), seconds) == [range(1, 2), range(10, 11)]
-
-
-@pytest.mark.parametrize("ages", [(None, None), (0, None), (0, 9)])
-def test_a_life_without_a_tick_cannot_be_shown(
-    monkeypatch: pytest.MonkeyPatch, ages: tuple[int | None, int | None]
-) -> None:
-    life: Any = SimpleNamespace(record=SimpleNamespace(id=[4], born=[70]), begins=170, ends=170)
-    monkeypatch.setattr(replay, "picture_rate", lambda life: RATE)
-    with pytest.raises(InputError, match=r"^organism 4 has not lived a tick yet"):
-        replay.parts_of(life, ages)
-
-
 @pytest.mark.parametrize("out", [None, Path("new.gif")])
 def test_a_video_shows_the_named_lives_of_one_world_and_then_those_of_other_runs(
     out: Path | None, monkeypatch: pytest.MonkeyPatch
@@ -131,23 +112,6 @@ def test_a_video_shows_the_named_lives_of_one_world_and_then_those_of_other_runs
         assert made == [("run", Path("RUN")), ("own", Path("RUN/videos")), film]
     else:
         assert (path, made) == (out, [film])
-
-
-@pytest.mark.parametrize(
-    ("check", "good", "bad"),
-    [
-        (video.check_name, (".mp4", ".gif"), (".MP4", ".Gif", ".npz", "")),
-        (diary.check_name, (".npz", ".parquet", ".csv"), (".NPZ", ".Csv", ".gif", "")),
-    ],
-)
-def test_a_file_must_have_the_suffix_of_a_known_kind(
-    check: Any, good: tuple[str, ...], bad: tuple[str, ...]
-) -> None:
-    for suffix in good:
-        check(Path(f"a{suffix}"))
-    for suffix in bad:
-        with pytest.raises(InputError, match=f"^a{suffix}: the file of a .* must end with "):
-            check(Path(f"a{suffix}"))
 
 
 @pytest.mark.parametrize(
@@ -310,20 +274,6 @@ def test_a_caption_shows_the_energy_and_in_the_last_tick_the_cause_of_death(
         "organism 4   age 29   energy 0.2",
         f"organism 4   age 30   energy -1.0{ends}",
     ]
-
-
-def test_captions_are_in_the_upper_corners_and_below_the_left_one() -> None:
-    def ink(*words: str) -> tuple[int, int, int, int]:
-        picture = replay._captioned(Image.new("L", (400, 100), 255), *words)
-        box = picture.point(lambda value: 255 * (value < 160)).getbbox()
-        assert box is not None
-        return box
-
-    left, right, below = ink("H", "", ""), ink("", "H", ""), ink("", "", "H")
-    assert left[0] == below[0] == pytest.approx(14, abs=3)
-    assert right[2] == pytest.approx(400 - 14, abs=3)
-    assert left[1:4:2] == right[1:4:2]
-    assert 12 <= left[1] < left[3] < 32 <= below[1] < below[3] < 56
 
 
 def test_a_card_shows_the_number_of_ticks_that_are_left_out(

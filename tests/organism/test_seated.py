@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from primordia.organism.playing import games, in_jax, on_host
-from primordia.organism.playing.games import Games, Players, play, stretches
-from primordia.organism.playing.seats import Frozen, Manner, Stretch
+from primordia.organism.playing import games
+from primordia.organism.playing.games import Games, Players, play
+from primordia.organism.playing.seats import Frozen, Stretch
 from primordia.random.wide import wide
 
 
@@ -34,29 +34,6 @@ def frozen(count: int) -> Frozen:
     """Freeze the senses of each second player, and the memory of each third player."""
     number = np.arange(count)[:, None]
     return Frozen(number % 2 == 0, number % 3 == 0)
-
-
-@pytest.mark.parametrize("kind", ["host", "jax"])
-def test_the_games_of_a_player_are_adjacent_and_numbered(
-    kind: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    for name, module in (("host", on_host), ("jax", in_jax)):
-        monkeypatch.setattr(module, "stretches", lambda *given, name=name: (name, *given))
-    manner = Manner(70, frozen(3), watched=True)
-    found: Any = stretches(players(3, kind), 2, manner, script(3))
-    where, law, habitat, seated, given = found
-    assert (where, law, habitat.kind) == (kind, LAW.alone, kind)
-    assert seated.genomes.tolist() == [[k, k] for k in (0, 0, 1, 1, 2, 2)]
-    assert seated.keys.lo.tolist() == [10, 10, 11, 11, 12, 12]
-    assert seated.cells.tolist() == [0, 1, 0, 1, 0, 1]
-    assert (given.ticks, given.watched) == (70, True)
-    assert given.frozen.senses[:, 0].tolist() == [True, True, False, False, True, True]
-    assert given.frozen.memory[:, 0].tolist() == [True, True, False, False, False, False]
-    assert [given.script(tick).tolist() for tick in (1, 2, 3)] == [
-        [0, 0, 10, 10, 20, 20], [0, 0, 11, 11, 21, 21], [0, 0, 10, 10, 22, 22],
-    ]  # fmt: skip
-    plain: Any = stretches(players(3, kind), 2, Manner(70))
-    assert (plain[-1].frozen, plain[-1].script) == (None, None)
 
 
 @pytest.mark.parametrize(
@@ -145,24 +122,3 @@ def test_courses_differ_if_senses_differ_in_any_tick_of_the_game(
             courses[tick, game] = after[game]
     lasting = [int(courses[tick, 0]) for tick in range(4)]  # the same change at other ticks
     assert len(set(lasting)) == 4
-
-
-@pytest.mark.parametrize(("kind", "sizes"), [("host", [2, 2, 1]), ("jax", [3, 2])])
-def test_lifespans_are_found_in_parts_and_each_part_has_its_own_frozen_inputs(
-    kind: str, sizes: list[int], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Five players have two games each. On the host four games are played at once, and in JAX six."""
-    asked: list[int] = []
-
-    def play_part(own: Players, count: int, ticks: int, frozen: Any, script: None) -> Any:
-        numbers = own.genomes[:, 0].astype(int)
-        asked.append(len(numbers))
-        assert (count, ticks) == (2, 70)
-        np.testing.assert_array_equal(frozen.senses, held.senses[numbers])
-        return SimpleNamespace(ticks=np.stack([numbers, 100 + numbers], axis=1))
-
-    held = frozen(5)
-    monkeypatch.setattr(games, "AT_ONCE", {"host": 4, "jax": 6})
-    monkeypatch.setattr(games, "_play_at_once", play_part)
-    spans = games.lifespans_in_games(players(5, kind), 2, 70, held)
-    assert (asked, spans.tolist()) == (sizes, [[k, 100 + k] for k in range(5)])

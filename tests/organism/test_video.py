@@ -12,12 +12,8 @@ from primordia.errors import InputError
 from primordia.habitats.cartpole.habitat import CartPole
 from primordia.organism import video
 from primordia.organism.reliving import replay
-from primordia.organism.reliving.relived import RelivedLife
-from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
-from tests.toys import HOST_CARTPOLE, HostCartPole
-from tests.worlds import config
 
 
 def frames(path: Path) -> list[Image.Image]:
@@ -110,7 +106,7 @@ def test_a_film_has_all_pictures_at_its_rate_and_an_even_size(tmp_path: Path) ->
     assert reds == pytest.approx([20.0 * k for k in range(7)], abs=12)
 
 
-@pytest.mark.parametrize("rate", [1 / 3600, 1 / 1500, 12.5, 125 / 3])
+@pytest.mark.parametrize("rate", [1 / 3600, 125 / 3])
 def test_a_film_takes_the_time_that_it_shows(rate: float, tmp_path: Path) -> None:
     path = tmp_path / "film.mp4"
     video.write(path, (Image.new("RGB", (16, 16), (9 * i, 0, 0)) for i in range(5)), rate)
@@ -119,7 +115,7 @@ def test_a_film_takes_the_time_that_it_shows(rate: float, tmp_path: Path) -> Non
     np.testing.assert_allclose(times, np.arange(5) / rate, rtol=1e-3)
 
 
-@pytest.mark.parametrize("rate", [15.0, 125 / 6, 200 / 9, 25.0, 1 / 3])
+@pytest.mark.parametrize("rate", [200 / 9, 1 / 3])
 def test_a_gif_takes_the_time_that_it_shows(rate: float, tmp_path: Path) -> None:
     """To a hundredth of a second, in which a GIF counts."""
     path = tmp_path / "film.gif"
@@ -210,21 +206,3 @@ def test_wrong_input_is_an_error_that_says_why(poles: Path, mill: Path, tmp_path
     complains(here("replay", poles, "--out", tmp_path / "x.avi"), 2, ".mp4 or .gif")
     complains(here("replay", mill), 2, "draws no pictures, since it has no `picture` and no `rate`")
     complains(here("replay", tmp_path), 2, "is not a run")
-
-
-@pytest.mark.slow
-def test_a_habitat_without_pictures_gives_no_video(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    values = {"task": "host", "habitat": HOST_CARTPOLE, "cells": 4, "stop": {"ticks": 20}}
-    loop.start(config(values), tmp_path / "run")
-    no_pictures = "draws no pictures, since it has no "
-    complains(here("replay", tmp_path / "run"), 2, no_pictures, "`picture` and no `seen`")
-    monkeypatch.setattr(HostCartPole, "picture", None, raising=False)
-    complains(
-        here("replay", tmp_path / "run"),
-        2,
-        "draws no pictures, since it has no `seen` and no `rate`",
-    )
-    (seen,) = RelivedLife.of(Archive(tmp_path / "run"), 0).stretches()
-    assert seen.bodies is None

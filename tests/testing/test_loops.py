@@ -62,12 +62,14 @@ def changed(looped: Looped, name: str) -> Looped:
     return born, senses, Outcome(**values)
 
 
-@pytest.mark.parametrize("name", ["senses", "fatal", "food", "effort", "expired"])
+STEPPED = "in a compiled loop than when it is stepped"
+
+
 @pytest.mark.parametrize(
-    ("first", "says"),
+    ("name", "first", "says"),
     [
-        ("changed", "in a compiled loop than when it is stepped"),
-        ("same", "when it is traced again"),
+        *((name, "changed", STEPPED) for name in ("senses", "fatal", "food", "effort", "expired")),
+        ("expired", "same", "when it is traced again"),
     ],
 )
 def test_each_value_that_differs_in_a_loop_is_found(
