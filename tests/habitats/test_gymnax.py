@@ -6,6 +6,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from jax import lax
 
 from primordia.config import validated
 from primordia.errors import InputError
@@ -224,14 +225,17 @@ def test_ages_are_counted_only_where_a_tick_draws() -> None:
 
 def test_a_sticky_action_is_that_of_the_tick_before_with_its_probability() -> None:
     habitat, ticks = Gymnax(env="tests.walks:Choice", sticky=0.25), 400
-    bodies, differs = habitat.reset(WORDS), np.zeros(4)
-    for tick in range(ticks):
-        before, held = state_of(habitat, bodies)["place"][:, 0] * 0.9, np.asarray(bodies.held)
-        chosen = jnp.full(4, 1 + tick % 2, jnp.int32)
-        bodies, _ = habitat.step(bodies, chosen)
-        made = np.round((state_of(habitat, bodies)["place"][:, 0] - before) / 0.5).astype(int)
-        assert ((made == chosen) | (made == held)).all()
-        differs += made != chosen
+    chosen = np.tile(1 + np.arange(ticks, dtype=np.int32)[:, None] % 2, 4)
+
+    def tick(bodies: Any, action: Any) -> tuple[Any, Any]:
+        after, _ = habitat.step(bodies, action)
+        before, now = (state_of(habitat, each)["place"][:, 0] for each in (bodies, after))
+        return after, (now - before * 0.9, bodies.held)
+
+    moved, held = jax.jit(lambda words: lax.scan(tick, habitat.reset(words), chosen)[1])(WORDS)
+    made = np.round(np.asarray(moved) / 0.5).astype(int)
+    assert ((made == chosen) | (made == held)).all()
     # An action that alternates differs from the one made in a fifth of the ticks.
-    np.testing.assert_allclose(differs / ticks, 0.2, atol=0.06)
+    differs = (made != chosen).mean(axis=0)
+    np.testing.assert_allclose(differs, 0.2, atol=0.06)
     assert len(np.unique(differs)) > 1
