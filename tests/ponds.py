@@ -102,14 +102,6 @@ class Hidden(Pond):
         return super().step(action)
 
 
-class Moody(Pond):
-    """A reward that depends on the state of the module; nothing else does."""
-
-    def step(self, action: Any) -> tuple[Any, float, bool, bool, dict]:
-        observation, reward, *others = super().step(action)
-        return observation, reward + next(NUMBERS), *others
-
-
 class Worn(Pond):
     """A reset that does not restore all."""
 
@@ -230,7 +222,7 @@ def food(observation: Any, reward: Any, terminated: Any, truncated: Any, info: A
 
 
 KINDS = (
-    Pond, Odd, Unseeded, Hidden, Moody, Worn, Grasping, Outside, Broken, Crashing, Spoiled, Splashing,
+    Pond, Odd, Unseeded, Hidden, Worn, Grasping, Outside, Broken, Crashing, Spoiled, Splashing,
     Unborn, Talking, Still, Closed, Sealed,
 )  # fmt: skip
 for kind in KINDS:

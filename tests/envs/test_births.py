@@ -23,13 +23,13 @@ def test_a_given_place_replaces_the_number_of_the_life() -> None:
 
 
 def test_seeds_that_differ_in_any_bit_give_other_lives() -> None:
-    env, seeds = LifeEnv(TASK), [0, 2**32, 0, 7 + 2**40, 7]
+    env, seeds = LifeEnv(TASK), [0, 2**32, 7 + 2**40]
     alone = [env.reset(seed=seed)[0] for seed in seeds]
-    assert len(np.unique(alone, axis=0)) == 4
-    many = LifeVectorEnv(TASK, 5)
+    assert len(np.unique([*alone, env.reset(seed=7)[0]], axis=0)) == 4
+    many = LifeVectorEnv(TASK, 3)
     np.testing.assert_array_equal(many.reset(seed=seeds)[0], alone)
     single = LifeVectorEnv(TASK)
-    np.testing.assert_array_equal(single.reset(seed=7 + 2**40)[0], alone[3:4])
+    np.testing.assert_array_equal(single.reset(seed=7 + 2**40)[0], alone[2:])
 
 
 @pytest.mark.parametrize("kind", [LifeEnv, LifeVectorEnv])
@@ -48,4 +48,4 @@ def test_returned_senses_do_not_change_later(kind: Any) -> None:
 def test_settings_that_differ_from_those_of_the_task_hold() -> None:
     settings = {"habitat": {"senses": ["theta"]}}
     assert LifeEnv(TASK, settings).observation_space.shape == (1,)
-    assert LifeVectorEnv(TASK, 2, settings).reset(seed=1)[0].shape == (2, 1)
+    assert LifeVectorEnv(TASK, 3, settings).observation_space.shape == (3, 1)

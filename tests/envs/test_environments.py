@@ -18,7 +18,7 @@ from gymnasium.vector import AutoresetMode
 import primordia
 import primordia.envs
 from primordia.config import load
-from primordia.envs import Forager, LifeEnv, LifeVectorEnv, Survival
+from primordia.envs import Forager, LifeEnv, LifeVectorEnv
 from primordia.law.world import Cause
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.settings.tables import tasks
@@ -193,16 +193,6 @@ def test_a_dying_body_keeps_its_own_senses_while_another_is_born() -> None:
     assert together > 3
 
 
-def test_a_seed_gives_the_same_lives_and_another_gives_others() -> None:
-    env, actions = LifeEnv("CartPole-survival"), np.zeros(60, int)
-    one, other = played(env, 0, actions), played(env, 0, actions)
-    for a, b in zip(one, other, strict=True):
-        np.testing.assert_array_equal(a[0], b[0])
-    assert (played(env, 4, actions)[0][0] != one[0][0]).all()
-    begins = [each[0].tobytes() for each in one if len(each) == 1]
-    assert len(set(begins)) == len(begins) > 2
-
-
 def test_a_life_can_be_seen() -> None:
     env = LifeEnv("CartPole-survival", render_mode="rgb_array")
     with pytest.raises(ResetNeeded, match="there is no body to see"):
@@ -221,19 +211,6 @@ def test_films_of_a_life_have_the_speed_of_its_habitat(task: str, rate: float) -
     assert LifeEnv.metadata["render_fps"] == 30
 
 
-def test_a_forager_starves_as_the_law_says() -> None:
-    """A store of 10 that drains by 1 and gets 0.5 a tick is empty after 20 ticks."""
-    env = Forager(gymnasium.make("tests.ponds:Pond-v0", edge=1e9), lambda *_: 0.5, store=10.0)
-    env.reset(seed=0)
-    energies = []
-    for tick in range(1, 21):
-        _, _, died, _, info = env.step(env.action_space.sample())
-        energies.append(info["energy"])
-        assert died == (tick == 20)
-    assert energies == [10 - 0.5 * tick for tick in range(1, 21)]
-    assert (info["cause"], info["food"]) == ("starved", 10.0)
-
-
 @pytest.mark.parametrize("food", [np.inf, -np.inf, np.nan])
 def test_food_that_is_not_finite_is_not_eaten(food: float) -> None:
     meals = iter([2.0, food])
@@ -241,31 +218,6 @@ def test_food_that_is_not_finite_is_not_eaten(food: float) -> None:
     env.reset(seed=0)
     eaten = [env.step(env.action_space.sample())[-1]["food"] for _ in range(2)]
     assert eaten == [2, 2]
-
-
-@pytest.mark.parametrize(
-    ("edge", "store", "cause"), [(1e9, 1.0, "starved"), (-1.0, 1.0, "fatal"), (-1.0, 9.0, "fatal")]
-)
-def test_a_fall_is_the_cause_of_death_whether_or_not_the_energy_ends_with_it(
-    edge: float, store: float, cause: str
-) -> None:
-    env = Forager(gymnasium.make("tests.ponds:Pond-v0", edge=edge), lambda *_: 0.0, store=store)
-    env.reset(seed=0)
-    _, _, died, _, info = env.step(env.action_space.sample())
-    assert (died, info["cause"], info["energy"]) == (True, cause, store - 1)
-
-
-def test_survival_has_no_reward_but_life_and_no_limit() -> None:
-    env = Survival(gymnasium.make("tests.ponds:Pond-v0"), reward=2.0)
-    env.reset(seed=1)
-    rewards, died, tick = [], False, 0
-    while not died and tick < LONG:
-        _, reward, died, cut, _ = env.step(np.zeros(1, np.float32))
-        rewards.append(reward)
-        assert not cut
-        tick += 1
-    assert died
-    assert rewards == [2.0] * (tick - 1) + [0.0]
 
 
 def test_bodies_keep_the_seeds_that_they_were_given() -> None:

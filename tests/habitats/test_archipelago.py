@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -20,7 +21,7 @@ from primordia.habitats.scaled import scaled
 from primordia.runs.digest import digests
 from primordia.runs.fork import _form
 from primordia.settings.islands import Islands
-from tests.habitats.test_parameters import HeldPoles
+from tests.habitats.test_parameters import ACTIONS, BODIES, WORDS, HeldPoles
 from tests.toys import Clocked, Mill, Mirror, Watch
 from tests.worlds import MEADOW, config, law_of
 
@@ -60,16 +61,17 @@ def test_a_button_is_one_choice_on_all_islands_and_nothing_where_it_is_missing()
     )
     assert (both.buttons, both.action) == (("left", "noop", "right", "jump"), Discrete(4))
     assert (both.senses_size, both.words) == (3, 1)
-    bodies = both.reset(jnp.zeros((5, 1), jnp.uint32))
+    bodies, step = both.reset(np.zeros((5, 1), np.uint32)), jax.jit(both.step)
+    sense = jax.jit(both.sense)
     west, east = [0, 1, 2, 1], [1, 2, 2, 0]
     for button in range(4):
-        after, outcome = both.step(bodies, jnp.full(5, button, jnp.int32))
+        after, outcome = step(bodies, np.full(5, button, np.int32))
         assert [each.tolist() for each in after.island] == [[west[button]] * 2, [east[button]] * 3]
         own = [west[button]] * 2 + [east[button]] * 3
         assert outcome.fatal.tolist() == [each == 0 for each in own]
         assert outcome.food.tolist() == [0.0] * 2 + [2.0 * east[button]] * 3
         assert outcome.capacity.tolist() == [1.0] * 2 + [0.5] * 3
-        senses = np.asarray(both.sense(after))
+        senses = np.asarray(sense(after))
         assert senses[:2, 1:].sum() == 0, "the senses that an island lacks are 0"
         assert senses[:, 0].tolist() == own
     assert at(both, 1) is both.habitats[0]
@@ -78,18 +80,19 @@ def test_a_button_is_one_choice_on_all_islands_and_nothing_where_it_is_missing()
 
 def test_parts_are_selected_checked_split_and_joined_island_by_island() -> None:
     """Two worlds of five cells; rows are counted world by world."""
-    rows = jnp.arange(10.0)
+    rows = np.arange(10.0)
     west, east = split(rows, SHORE.sizes)
     assert (west.tolist(), east.tolist()) == ([0, 1, 5, 6], [2, 3, 4, 7, 8, 9])
     assert joined([west, east], SHORE.sizes).tolist() == rows.tolist()
     old = Parts((west, east), SHORE.sizes)
-    new = Parts((west + 100, jnp.where(east == 8, jnp.nan, east + 100)), SHORE.sizes)
-    mask = jnp.asarray([True, False] * 5)
-    chosen = joined(select_bodies(mask, new, old).island, SHORE.sizes)
+    new = Parts((west + 100, np.where(east == 8, np.nan, east + 100)), SHORE.sizes)
+    mask = np.array([True, False] * 5)
+    chosen = joined(jax.jit(select_bodies)(mask, new, old).island, SHORE.sizes)
     expected = np.where(mask, np.r_[100.0:108.0, np.nan, 109.0], np.arange(10.0))
     np.testing.assert_array_equal(chosen, expected)
-    assert np.flatnonzero(not_finite(new)).tolist() == [8]
-    assert not_finite(old).tolist() == [False] * 10
+    failed = jax.jit(not_finite)
+    assert np.flatnonzero(failed(new)).tolist() == [8]
+    assert failed(old).tolist() == [False] * 10
 
 
 def test_bodies_on_islands_on_the_host_are_those_in_jax() -> None:
@@ -165,9 +168,9 @@ def test_all_islands_begin_a_step_before_one_has_ended_it() -> None:
             return end
 
     host: Any = archipelago([Slow("meadow"), Slow("meadow")], SHORE)
-    host.open(5)
-    host.reset(np.arange(5), np.zeros((5, host.words), np.uint32))
-    host.step(np.zeros(5, np.int32), np.ones(5, bool))
+    host.open(10)
+    host.reset(np.arange(10), np.zeros((10, host.words), np.uint32))
+    host.step(np.zeros(10, np.int32), np.ones(10, bool))
     assert heard == ["begins", "begins", "ends", "ends"]
 
 
@@ -197,9 +200,6 @@ def test_choices_and_amounts_do_not_fit_together() -> None:
         archipelago([Keys(1, count=2), amounts], SHORE)
 
 
-WORDS = np.random.default_rng(3).integers(0, 2**32, (6, 4), dtype=np.uint32)
-
-
 def poles(**settings: Any) -> Any:
     return load("CartPole-survival", {"habitat": settings}).build_habitat()
 
@@ -207,9 +207,9 @@ def poles(**settings: Any) -> Any:
 def test_factors_are_those_of_step_scaled() -> None:
     factors = {"force": 0.5, "pole-length": 3.0}
     light, plain = poles(factors=factors), CartPole()
-    row = np.float32([[factors.get(name, 1.0) for name in plain.parameters]] * 6)
-    bodies = plain.reset(jnp.asarray(WORDS))
-    push = jnp.arange(6, dtype=jnp.int32) % 2
+    row = np.float32([[factors.get(name, 1.0) for name in plain.parameters]] * BODIES)
+    bodies = plain.reset(WORDS[:, :4])
+    push = ACTIONS[0]
     mine = shared(type(light).step, light)(bodies, push)[0]
     expected = shared(CartPole.step_scaled, plain)(bodies, push, row)[0]
     np.testing.assert_array_equal(mine, expected)

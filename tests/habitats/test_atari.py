@@ -78,15 +78,6 @@ def test_there_are_many_games() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "near"),
-    [("Ms-Pacman", "ms_pacman, pacman"), ("tenis", "tennis, atlantis"), ("space", "space_war")],
-)
-def test_an_unknown_game_suggests_those_with_a_similar_name(name: str, near: str) -> None:
-    with pytest.raises(ValueError, match=rf"there is no game '{name}'; did you mean {near}\?"):
-        Atari(game=name)
-
-
-@pytest.mark.parametrize(
     ("settings", "words"),
     [({}, 0), ({"noops": 1}, 2), ({"sticky": 0.1}, 2), ({"noops": 1, "sticky": 0.1}, 2)],
 )

@@ -204,7 +204,7 @@ def test_a_picture_has_pixels_twice_as_wide_as_high_below_its_caption() -> None:
 
 def test_some_games_have_larger_screens() -> None:
     """Time runs as on the console, for any number of frames per tick."""
-    habitat = Atari(game="pacman", frame_skip=4)
+    habitat = Atari(game="pacman", frame_skip=4, workers=0)
     habitat.open(2, watched=True)
     habitat.reset(np.array([0, 1]), np.zeros((2, habitat.words), np.uint32))
     screens = habitat.seen()["screen"]

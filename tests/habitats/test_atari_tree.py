@@ -26,11 +26,13 @@ ROOM = [80, 150, 10_000]
 SLOW = [pytest.param(*each, 1, 0, marks=pytest.mark.slow) for each in product(ROOM, games())]
 
 
-def arcade(kind: type[Arcade], **options: Any) -> tuple[Arcade, dict[str, np.ndarray]]:
-    """Return the emulators of all cells, each at the start of a game, and their arrays."""
+def arcade(
+    kind: type[Arcade], cells: int = CELLS, **options: Any
+) -> tuple[Arcade, dict[str, np.ndarray]]:
+    """Return emulators of the first cells, each at the start of a game, and the arrays of all cells."""
     arrays = {name: np.zeros((CELLS, *shape), dtype) for name, (dtype, shape) in FIELDS.items()}
     made = kind(arrays, **(PONG | options))
-    for cell in range(CELLS):
+    for cell in range(cells):
         made.make(cell)
         made.reset(cell)
     return made, arrays
@@ -108,7 +110,7 @@ def test_lives_are_those_of_emulators_that_forget_nothing_and_share_nothing(
 
 def test_a_course_is_emulated_once(frames: Counter[str]) -> None:
     """Cells that press the same buttons share its frames, also if one of them was born later."""
-    made, arrays = arcade(TreeArcade)
+    made, arrays = arcade(TreeArcade, 3)
     before = frames["act"]
     score = np.random.default_rng(0).integers(0, 4, 100).tolist()
     for button in score:
@@ -123,7 +125,7 @@ def test_a_course_is_emulated_once(frames: Counter[str]) -> None:
 
 def test_a_life_is_emulated_from_its_first_other_button_on(frames: Counter[str]) -> None:
     """Before that, at most EVERY frames are emulated again."""
-    made, arrays = arcade(TreeArcade)
+    made, arrays = arcade(TreeArcade, 2)
     for _ in range(tree.EVERY * 3 - 1):
         pressed(made, arrays, {0: 1, 1: 1})
     before = frames["act"]
@@ -160,8 +162,8 @@ def test_nothing_is_mixed_up_if_there_is_no_room_at_a_birth_or_load(
     event: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tree, "POSITIONS", 1)
-    made, arrays = arcade(TreeArcade, noops=9)
-    other, alone = arcade(Arcade, noops=9)
+    made, arrays = arcade(TreeArcade, 3, noops=9)
+    other, alone = arcade(Arcade, 2, noops=9)
     assert isinstance(made, TreeArcade)
     later = other.save(1)
     for _ in range(9):
@@ -183,7 +185,7 @@ def test_nothing_is_mixed_up_if_there_is_no_room_at_a_birth_or_load(
 
 
 def test_a_number_of_no_ops_is_played_once(frames: Counter[str]) -> None:
-    made, arrays = arcade(TreeArcade, noops=9)
+    made, arrays = arcade(TreeArcade, 3, noops=9)
     before = frames["act"]
     for cell, words in enumerate([(7, 0), (17, 1), (3, 2)]):
         arrays["words"][cell] = words
@@ -199,7 +201,7 @@ def test_a_number_of_no_ops_is_played_once(frames: Counter[str]) -> None:
 def test_a_birth_takes_at_most_sixteen_no_ops_once_starts_are_kept(
     kind: type[Arcade], frames: Counter[str]
 ) -> None:
-    made, arrays = arcade(kind, noops=10_000)
+    made, arrays = arcade(kind, 1, noops=10_000)
     for noops, emulated in ((1_000, 1_000), (999, 7), (16, 16), (17, 1), (1_003, 11)):
         before = frames["act"]
         arrays["words"][0] = noops, 0
@@ -208,7 +210,7 @@ def test_a_birth_takes_at_most_sixteen_no_ops_once_starts_are_kept(
 
 
 def test_an_emulator_that_does_not_repeat_its_game_is_an_error() -> None:
-    made, arrays = arcade(TreeArcade)
+    made, arrays = arcade(TreeArcade, 2)
     assert isinstance(made, TreeArcade)
     for _ in range(100):
         pressed(made, arrays, {0: 1, 1: 1})

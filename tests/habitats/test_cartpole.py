@@ -69,7 +69,7 @@ def test_whole_episodes_agree_in_float64(gym_cartpole: Any) -> None:
     """
     rng, differ, lengths = np.random.default_rng(1), 0.0, []
     step = jax.jit(CartPole().step)
-    for episode in range(60):
+    for episode in range(30):
         balance, weights = episode % 2, rng.normal(size=4)
         gym_cartpole.reset(seed=episode)
         ours, over, ticks = np.array(gym_cartpole.state)[None], False, 0
@@ -100,19 +100,12 @@ def test_bodies_start_uniform_within_the_spread() -> None:
         np.testing.assert_allclose(bodies, [[-spread] * 4, [spread] * 4], rtol=2e-6)
 
 
-def test_hidden_senses_are_positions_only() -> None:
-    states = jnp.asarray(random_states(5))
-    hidden = CartPole(senses=("x", "theta"))
-    assert hidden.senses_size == 2
-    np.testing.assert_array_equal(hidden.sense(states), states[:, [0, 2]])
-
-
-@pytest.mark.parametrize("count", range(1, 5))
-def test_senses_come_in_the_order_of_the_settings(count: int) -> None:
-    states = jnp.asarray(random_states(5))
-    for places in permutations(range(4), count):
+def test_senses_come_in_the_order_of_the_settings() -> None:
+    states: Any = random_states(5)
+    for places in [*permutations(range(4)), *permutations(range(4), 2)]:
         ordered = CartPole(senses=tuple(COORDINATES[place] for place in places))
-        np.testing.assert_array_equal(ordered.sense(states), np.asarray(states)[:, places])
+        assert ordered.senses_size == len(places)
+        np.testing.assert_array_equal(ordered.sense(states), states[:, places])
 
 
 @pytest.mark.parametrize(
@@ -137,22 +130,13 @@ def test_limits_are_settings(change: dict, state: list, fatal: bool) -> None:
     assert bool(outcome.fatal[0]) is fatal
 
 
-def test_the_cart_is_drawn_where_it_is() -> None:
-    """Its middle moves from 60 pixels before the left edge to 60 before the right one."""
-    cart = np.array([35, 57, 91])
-    for x, middle in ((-2.4, 60), (0.0, 320), (1.2, 450), (2.4, 580)):
-        picture = np.asarray(draw(np.array([x, 0, 0, 0], np.float32), 1, 2.4).convert("RGB"))
-        columns = np.flatnonzero((np.abs(picture.astype(int) - cart).sum(axis=2) < 20).any(axis=0))
-        assert abs((columns[0] + columns[-1]) / 2 - middle) < 4
-
-
 def coloured(picture: np.ndarray, colour: tuple[int, int, int]) -> tuple[np.ndarray, np.ndarray]:
     """Return rows and columns of the pixels of a colour."""
     rows, columns = np.nonzero(np.abs(picture.astype(int) - colour).sum(axis=2) < 20)
     return rows, columns
 
 
-@pytest.mark.parametrize("angle", [-60.0, 0.0, 30.0, 60.0, 100.0])
+@pytest.mark.parametrize("angle", [-60.0, 30.0, 100.0])
 def test_the_pole_is_drawn_at_its_angle(angle: float) -> None:
     """The pole is 150 pixels long. At a positive angle it leans to the right."""
     theta = math.radians(angle)

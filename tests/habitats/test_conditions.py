@@ -64,7 +64,6 @@ def by_python(text: str, body: int) -> Any:
     return eval(text, {"__builtins__": {}, **known}, names)
 
 
-@settings(max_examples=50)
 @given(condition)
 def test_conditions_mean_what_they_mean_in_python(text: str) -> None:
     values = np.broadcast_to(parse(text, "condition", NAMES)(VALUES), 3)
@@ -72,7 +71,6 @@ def test_conditions_mean_what_they_mean_in_python(text: str) -> None:
     assert values.tolist() == [bool(by_python(text, body)) for body in range(3)]
 
 
-@settings(max_examples=50)
 @given(number)
 def test_amounts_mean_what_they_mean_in_python(text: str) -> None:
     values = np.broadcast_to(parse(text, "amount", NAMES)(VALUES), 3)
@@ -210,7 +208,7 @@ def test_a_sum_of_many_terms_is_in_the_grammar() -> None:
     assert parse(text, "amount", NAMES)(VALUES).tolist() == [297, 0, 99]
 
 
-@pytest.mark.parametrize("kind", [np.uint8, np.int16, np.uint16, np.int32, np.uint32, np.int64])
+@pytest.mark.parametrize("kind", [np.uint8, np.int32, np.int64])
 @pytest.mark.parametrize("text", ["lives * lives * lives", "-lives - lives", "lives + lives - 300"])
 def test_arithmetic_of_counts_does_not_wrap(kind: type, text: str) -> None:
     """Counts of 31 bits, cubed, need 93."""
@@ -289,7 +287,7 @@ def is_computed_or_refused(text: str, kind: Literal["condition", "amount", "numb
 KINDS: Any = st.sampled_from(["condition", "amount", "numbers"])
 
 
-@settings(max_examples=40)
+@settings(max_examples=15)
 @given(WILD, KINDS)
 def test_any_text_is_computed_or_refused(text: str, kind: Any) -> None:
     is_computed_or_refused(text, kind)

@@ -112,6 +112,9 @@ def test_the_abilities_of_a_habitat_follow_from_its_methods() -> None:
     }
     for habitat, abilities in able.items():
         assert {each for each in Ability if habitat.can(each)} == abilities, habitat
+        assert habitat.exact == (Ability.SAVE in abilities), (
+            "lives are exact if bodies can be saved"
+        )
 
 
 def test_an_ability_needs_both_of_its_methods(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -120,12 +123,6 @@ def test_an_ability_needs_both_of_its_methods(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.delattr(HostCartPole, "load")
     assert HostCartPole().lacks(Ability.SAVE) == ["load"]
     assert not HostCartPole().exact
-
-
-def test_lives_are_exact_where_bodies_can_be_saved() -> None:
-    assert CartPole().exact
-    assert HostCartPole().exact
-    assert not Forgetful().exact
 
 
 def test_a_class_may_override_what_follows_from_its_methods(

@@ -17,7 +17,6 @@ from tests.ponds import Pond
 FAULTS = {
     "Unseeded": ("restart", False, "another beginning: the environment ignores its seed"),
     "Hidden": ("restart", False, "the same seed and actions give another life"),
-    "Moody": ("restart", False, "the same seed and actions give another life"),
     "Worn": ("snapshot", True, "reset does not restore everything"),
     "Grasping": ("snapshot", False, "step changes the action"),
     "Outside": ("snapshot", False, "outside the declared space"),
@@ -47,7 +46,6 @@ def test_each_fault_is_found(name: str) -> None:
     ("name", "saving", "why"),
     [
         ("Pond", "snapshot", ""),
-        ("Odd", "snapshot", ""),
         ("Closed", "replay", "draws is a range_iterator, which cannot be saved"),
         ("Sealed", "replay", "a life does not go on exactly from a saved state"),
     ],
@@ -129,9 +127,8 @@ def test_a_function_of_food_returns_a_number(
     assert (reward, terminated, truncated, info["age"]) == (observation[1], False, False, 1)
 
 
-@pytest.mark.parametrize("name", ["CartPole-v1", "Blackjack-v1", "FrozenLake-v1"])
-def test_environments_that_come_with_gymnasium_go_on_from_their_state(name: str) -> None:
-    assert measure(name, {}, ()).saving == "snapshot"
+def test_an_environment_that_comes_with_gymnasium_goes_on_from_its_state() -> None:
+    assert measure("FrozenLake-v1", {}, ()).saving == "snapshot"
 
 
 @pytest.mark.parametrize(

@@ -28,15 +28,6 @@ def test_numbers_of_info_are_single_ones_and_short_lists() -> None:
                               "grid": 6, "long": LONGEST}  # fmt: skip
 
 
-def test_each_life_of_random_play_has_another_seed(monkeypatch: pytest.MonkeyPatch) -> None:
-    seeds = noted_seeds(monkeypatch)
-    seen = probe.random_play("tests.ponds:Pond-v0", {"edge": 1.5}, ())
-    assert len(seen) == probe.TICKS + len(seeds)
-    begins = [k for k, (_, info) in enumerate(seen) if info["age"] == 0]
-    assert seeds == [k - number for number, k in enumerate(begins)]
-    assert len(seeds) > 5
-
-
 def test_random_play_has_the_options_and_notes_the_info_of_every_tick(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

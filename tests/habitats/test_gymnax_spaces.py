@@ -64,17 +64,18 @@ def test_a_box_becomes_minus_one_to_one_unless_it_is_within_these_or_a_point(
     np.testing.assert_allclose(senses.of(places), places if kept else [-1, 0, 1], atol=1e-3)
 
 
-@pytest.mark.parametrize(("sight", "reach"), [(None, 4), (1, 1), (6, 6)])
+@pytest.mark.parametrize(("sight", "reach"), [(None, 4), (1, 1)])
 def test_a_player_perceives_what_lies_around_it(sight: int | None, reach: int) -> None:
     """Everything that is seen is compared with a plain loop over the cells around the player."""
     rng = np.random.default_rng(0)
     senses = Senses(None, jax.ShapeDtypeStruct((3, 5, 2), jnp.float32), False, 1, sight)
     assert senses.grid == (2 * reach + 1, 2 * reach + 1, 2)
+    of = jax.jit(senses.of)
     for row, column in np.ndindex(3, 5):
         grid = rng.random((3, 5, 2)).astype(np.float32)
         grid[..., 1] = 0
         grid[row, column, 1] = 1
-        seen = np.asarray(senses.of(grid)).reshape(senses.grid)
+        seen = np.asarray(of(grid)).reshape(senses.grid)
         for y, x in np.ndindex(seen.shape[:2]):
             there = (row + y - reach, column + x - reach)
             within = 0 <= there[0] < 3 and 0 <= there[1] < 5

@@ -136,13 +136,12 @@ print(Renderer(model).draw(model.qpos0).size)
 """
 
 
-@pytest.mark.parametrize("library", ["egl", "osmesa"])
-def test_a_process_that_has_drawn_ends_in_silence(library: str) -> None:
+def test_a_process_that_has_drawn_ends_in_silence() -> None:
     """EGL's display is closed at exit, before objects are finalized; contexts must be gone by then."""
-    variables = {**commands.environment(), "MUJOCO_GL": library}
+    variables = {**commands.environment(), "MUJOCO_GL": "egl"}
     words = [sys.executable, "-c", PICTURE]
     done = subprocess.run(words, env=variables, capture_output=True, text=True, check=False)
     if "cannot be used" in done.stderr or "cannot be loaded" in done.stderr:
-        pytest.skip(f"there is no {library} here")
+        pytest.skip("there is no EGL here")
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.startswith("(640, 416)")

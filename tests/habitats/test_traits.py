@@ -54,9 +54,8 @@ def test_a_gene_counts_octaves_from_the_founder() -> None:
     assert (factors[:, 1] == 1).all()
 
 
-@pytest.mark.parametrize("count", [1, 7, 1000])
-def test_factors_have_the_same_bits_on_the_host_and_in_jax(count: int) -> None:
-    genes = np.random.default_rng(count).normal(scale=3, size=(count, 2)).astype(np.float32)
+def test_factors_have_the_same_bits_on_the_host_and_in_jax() -> None:
+    genes = np.random.default_rng(7).normal(scale=3, size=(1001, 2)).astype(np.float32)
     in_jax = np.asarray(shared(Traits.factors, TRAITS)(genes))
     np.testing.assert_array_equal(in_jax, TRAITS.factors(genes))
 
