@@ -283,3 +283,12 @@ def test_numbers_of_a_page_have_five_digits_and_no_fraction_if_they_are_whole() 
     values = curves.numbers(np.array([1 / 3, 123456.0, 2.0, np.nan, np.inf]))
     assert values == [0.33333, 123460, 2, None, None]
     assert [type(value) for value in values[1:3]] == [int, int]
+
+
+def test_curves_go_on_until_the_last_tick_of_any_world() -> None:
+    """The first of two worlds is the shorter one."""
+    worlds = [world_of(SHORT, ENDS[1]), world_of(LONG, ENDS[0])]
+    panels = named(joined(worlds, np.array([0, 1])))
+    for title in ("Organisms alive", "Mean age of the living"):
+        for table in panels[title]["tables"]:
+            assert table["x"][-1] == ENDS[0]
