@@ -7,7 +7,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from primordia.film.oldest import oldest_so_far, shown
-from tests.synthetic import world_of
+from tests.synthetic import LIVED, world_of
+
+
+@given(LIVED, st.lists(st.integers(0, 60), min_size=1, max_size=8))
+def test_the_oldest_so_far_has_the_greatest_age_by_then(
+    lived: list[tuple[int, int, bool]], later: list[int]
+) -> None:
+    world = world_of(lived)
+    ticks = int(world.born.min()) + np.sort(later)
+    found = oldest_so_far(world, ticks)
+    for tick, row in zip(ticks, found, strict=True):
+        ages = np.where(world.born <= tick, np.minimum(world.ended, tick) - world.born, -1)
+        assert ages[row] == ages.max()
 
 
 def test_among_equal_ages_the_living_come_before_the_dead_and_the_first_before_later_ones() -> None:
