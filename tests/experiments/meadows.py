@@ -7,17 +7,6 @@ import tomli_w
 
 from tests.worlds import HERD, MEADOW, MILL
 
-SHARED: dict[str, Any] = {
-    **MEADOW,
-    "brain": {"kind": "feed-forward", "hidden": 1},
-    "replication": 0.2,
-    "saturation_ticks": 20,
-    "hazard": 0.01,
-    "seed": 3,
-    "seeds": 3,
-    "stop": {"ticks": 300},
-}
-"""Meadows, some of which are saturated soon."""
 MILLS: dict[str, Any] = {
     **MILL,
     "brain": {"hidden": 4},

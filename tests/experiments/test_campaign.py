@@ -106,26 +106,6 @@ def test_one_arm_has_no_results(tmp_path: Path) -> None:
     asked.assert_not_called()
 
 
-@pytest.mark.parametrize(
-    ("done", "failed", "goes_on"),
-    [((0, 1, 2), (), True), ((0, 1), (2, 3), False), ((0,), (2,), True)],
-)
-def test_dashboards_follow_an_experiment_while_jobs_are_left(
-    done: tuple[int, ...], failed: tuple[int, ...], goes_on: bool, chosen: Campaign
-) -> None:
-    end(chosen, *done)
-    end(chosen, *failed, state="failed")
-    sources = primordia.load(chosen.path).sources()
-    assert sources.go_on == goes_on
-    assert sources.runs == chosen.runs()
-
-
-def test_the_worlds_of_a_single_arm_need_no_name(tmp_path: Path) -> None:
-    one = begin(write(tmp_path, arms=[{"name": "mild"}]), tmp_path / "out")
-    end(one, 0)
-    assert primordia.load(one.path).sources().runs == {"": [one.path / "mild" / "0-1"]}
-
-
 def test_a_directory_has_the_name_of_the_file(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -1,19 +1,12 @@
 """Jobs: wherever, in whatever order and however often cut off they are lived, each world is the same."""
 
 import csv
-import errno
-import json
 import os
-import random
 import shutil
 import signal
-import subprocess
-import sys
 from concurrent.futures import Future
 from pathlib import Path
-from typing import Any
 
-import numpy as np
 import pytest
 
 import primordia
@@ -23,7 +16,6 @@ from primordia.experiments.campaign import Campaign, begin
 from primordia.experiments.dispatch import live_all
 from primordia.experiments.plan import Ending, Job
 from primordia.runs import directory, loop
-from tests import commands, toys
 from tests.commands import complains, here
 from tests.experiments.meadows import write
 
@@ -48,20 +40,6 @@ def alone(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[str]]:
             (told,) = primordia.load(run).info()["worlds"]
             found.setdefault(arm.name, []).append(told["digest"])
     return found
-
-
-@pytest.mark.slow
-def test_jobs_in_any_order_make_the_worlds_of_one_run(
-    tmp_path: Path, alone: dict[str, list[str]]
-) -> None:
-    """By `--job K`, as the entries of a job array do."""
-    file, out = write(tmp_path), tmp_path / "out"
-    order = list(range(4))
-    random.Random(5).shuffle(order)
-    for number in [*order, order[0]]:
-        done = here("experiment", file, "--out", out, "--job", number, "--quiet")
-        assert done.returncode == 0, done.stderr
-    assert digests_of(begin(out)) == alone
 
 
 def test_what_a_kill_leaves_is_taken_up(tmp_path: Path, alone: dict[str, list[str]]) -> None:
@@ -96,17 +74,17 @@ def test_an_experiment_is_run_once_on_all_cores_though_processes_die(
         return worker
 
     monkeypatch.setattr(on_cores.Here, "_started", dying)
-    file, out = write(tmp_path), tmp_path / "out"
+    file, out = write(tmp_path, seeds=2), tmp_path / "out"
     done = here("experiment", file, "--out", out, "--jobs", 2)
     assert done.returncode == 0, done.stderr
     assert done.stderr.count("the job's process ended with status -9") == 2
     assert done.stderr.count("the job is tried again") == 2
     assert len(begun) == 4
     assert done.stdout.splitlines()[-3:] == [f"{out}/results.{end}" for end in ("md", "csv", "png")]
-    assert digests_of(begin(out)) == alone
+    assert digests_of(begin(out)) == {name: digests[:2] for name, digests in alone.items()}
     rows = list(csv.DictReader((out / "results.csv").read_text().splitlines()))
     assert [(row["arm"], row["seed"]) for row in rows] == [
-        (arm, str(seed)) for arm in ("mild", "harsh") for seed in range(3, 6)
+        (arm, str(seed)) for arm in ("mild", "harsh") for seed in (3, 4)
     ]
     assert (out / "results.md").read_text().startswith("# Is it mild?")
     before = {
@@ -155,46 +133,6 @@ def test_a_fork_goes_on_from_the_worlds_of_an_arm(tmp_path: Path) -> None:
     assert [job.worlds for job in by_place.jobs] == [job.worlds for job in two.jobs]
 
 
-@pytest.mark.slow
-def test_a_job_that_fails_stops_no_other_job(tmp_path: Path) -> None:
-    file, out = write(tmp_path), tmp_path / "out"
-    chosen = begin(file, out)
-    (out / "mild").mkdir()
-    (out / chosen.jobs[2].folder).write_text("in the way")
-    done = here("experiment", file, "--out", out, "--jobs", 1)
-    assert done.returncode == 1
-    lines = done.stderr.strip().splitlines()
-    assert lines[0].startswith("primordia: job 2 (mild) failed: ")
-    assert "tried again" not in lines[0]  # it would end in the same way
-    assert len(lines) == 2
-    assert lines[-1].endswith("1 job failed; give the same command to try again")
-    told = json.loads(here("experiment", out, "--status", "--json").stdout)
-    assert told["jobs"] == {"done": 3, "running": 0, "failed": 1, "waiting": 0}
-    assert [entry["job"] for entry in told["failed"]] == [2]
-    complains(here("experiment", out, "--job", 2), 1, "job 2 (mild) failed")
-    (out / chosen.jobs[2].folder).unlink()
-    assert here("experiment", file, "--out", out).returncode == 0
-
-
-@pytest.mark.slow
-def test_a_job_whose_disk_is_full_fails_alone_and_is_lived_later(
-    tmp_path: Path, alone: dict[str, list[str]], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def full(*_: Any, **__: Any) -> None:
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
-    chosen = begin(write(tmp_path), tmp_path / "out")
-    for job in chosen.jobs:
-        with monkeypatch.context() as patch:
-            if job.number == 2:
-                patch.setattr(np, "savez", full)
-            ending = jobs.ending_of(chosen.plan, job, chosen.path)
-        assert ending.state == ("failed" if job.number == 2 else "done")
-        assert ("No space left on device" in (ending.error or "")) == (job.number == 2)
-    assert here("experiment", chosen.path).returncode == 0
-    assert digests_of(chosen) == alone
-
-
 def test_the_status_tells_what_is_done_without_opening_a_run(tmp_path: Path) -> None:
     chosen = begin(write(tmp_path), tmp_path / "out")
     for job in chosen.jobs[:3]:
@@ -214,23 +152,6 @@ def test_the_status_tells_what_is_done_without_opening_a_run(tmp_path: Path) -> 
     assert "3 of 4 jobs done" in text
     shutil.rmtree(chosen.path / chosen.jobs[0].folder)
     assert begin(chosen.path).status().jobs["waiting"] == 2, "a run that was removed is not done"
-
-
-@pytest.mark.slow
-def test_some_arms_are_run_alone(tmp_path: Path) -> None:
-    file, out = write(tmp_path), tmp_path / "out"
-    done = here("experiment", file, "--out", out, "--only", "harsh", "--jobs", 1)
-    assert done.returncode == 0
-    assert " 0 of 2 jobs done" in done.stdout
-    assert "2 jobs of other arms left to do" in done.stderr
-    assert begin(out).status().jobs == {"done": 2, "running": 0, "failed": 0, "waiting": 2}
-    assert begin(out).status(["harsh"]).jobs["waiting"] == 0
-    assert [arm.name for arm in begin(out).status(["harsh"]).arms] == ["harsh"]
-    assert not (out / "mild").exists()
-    primordia.experiment(file, out, jobs=1, only=["harsh"])
-    assert not (out / "results.md").exists()
-    complains(here("compare", out), 2, f"arm mild of {out} has not begun yet")
-    complains(here("replay", out), 2, f"{out} is an experiment; name one of its arms")
 
 
 def test_a_job_that_another_process_lives_is_left_to_it(tmp_path: Path) -> None:
@@ -257,14 +178,6 @@ class Fated:
     def stop(self) -> None: ...
 
 
-def test_a_job_whose_process_alone_is_stopped_goes_on(tmp_path: Path) -> None:
-    """A place that stops each job once; the loop ends when all are done."""
-    chosen = begin(write(tmp_path), tmp_path / "out")
-    place = Fated(*([Ending(number, "stopped"), Ending(number, "done")] for number in range(4)))
-    result = live_all(chosen.jobs, place, lambda: None, lambda *_: None)
-    assert (result.done, result.stopped) == (4, False)
-
-
 def test_each_job_that_might_succeed_is_tried_three_times(tmp_path: Path) -> None:
     """Neither failures of other jobs count, nor signals to the job's own process."""
     chosen, told = begin(write(tmp_path), tmp_path / "out"), list[tuple[int, bool]]()
@@ -285,38 +198,3 @@ def test_each_job_that_might_succeed_is_tried_three_times(tmp_path: Path) -> Non
     assert sorted(told) == [
         (0, False), (0, True), (0, True), (1, False), (2, True), (2, True), (3, True)
     ]  # fmt: skip
-
-
-@pytest.mark.slow
-def test_code_of_a_folder_from_elsewhere_is_not_executed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A job of somewhere else may hold any code: it is not run where its module is not installed."""
-    (tmp_path / "author").mkdir()
-    monkeypatch.chdir(tmp_path / "author")
-    source = (Path(toys.__file__)).read_text(encoding="utf-8")
-    Path("strange_toys.py").write_text(source, encoding="utf-8")
-    file = write(Path(), arms=[{"name": "all", "habitat": {"name": "strange_toys:Mill"}}])
-    chosen = begin(file, tmp_path / "out")
-    job, config = chosen.jobs[0], jobs.configuration(chosen.plan, chosen.jobs[0])
-    stop = config.stop.model_copy(update={"ticks": 5})
-    loop.start(config.model_copy(update={"stop": stop}), chosen.path / job.folder)
-    (tmp_path / "reader").mkdir()
-    Path("strange_toys.py").unlink()
-    here_ = {**commands.environment(), "XDG_STATE_HOME": str(tmp_path / "state")}
-
-    def lived(*options: str) -> subprocess.CompletedProcess[str]:
-        words = ["primordia", "experiment", str(chosen.path), "--job", "0", *options]
-        script = f"import sys; from primordia.cli import main; sys.argv = {words}; main()"
-        return subprocess.run(
-            [sys.executable, "-P", "-c", script],
-            cwd=tmp_path / "reader",
-            env=here_,
-            capture_output=True,
-            text=True,
-        )
-
-    done = lived()
-    assert done.returncode == 1
-    assert "executes code that Primordia does not know" in done.stderr
-    assert lived("--trust").returncode == 0

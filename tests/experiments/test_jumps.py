@@ -1,15 +1,12 @@
 """Sudden jumps of a world's course, as `experiments/jumps.py` finds them."""
 
 from importlib import import_module
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from primordia.runs import loop
 from tests.experiments.test_shipped import EXPERIMENTS
-from tests.worlds import MEADOW, config
 
 
 @pytest.fixture
@@ -52,17 +49,3 @@ def test_a_smooth_rise_has_no_sudden_jumps_and_a_step_has_one(jumps: Any) -> Non
     assert all(each["jumps"] == 1 for each in steps)
     assert sum(each["sudden jumps"] == 1 for each in steps) >= 5
     assert sum(each["p of the largest"] <= 0.05 for each in steps) >= 5
-
-
-@pytest.mark.slow
-def test_jumps_of_a_run_are_found_in_each_world(jumps: Any, tmp_path: Path) -> None:
-    settings = {**MEADOW, "brain": {"hidden": 1}, "seeds": 2, "hazard": 0.05, "replication": 0.3}
-    safer = {"kind": "schedule", "setting": "hazard", "at": 500, "value": 0.005}
-    loop.start(config({**settings, "seasons": [safer], "stop": {"ticks": 3000}}), tmp_path / "a")
-    rows = jumps.steps_of(tmp_path / "a")
-    assert all(1 <= row["jumps"] <= 2 for row in rows), (
-        "organisms that die soon after the change lived before it"
-    )
-    assert [row["falls"] for row in rows] == [0, 0]
-    assert all(5 < row["largest jump"] < 20 for row in rows)
-    assert "| a | 2 | " in jumps.summary(rows)

@@ -7,11 +7,9 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 from unittest.mock import MagicMock
 
-import numpy as np
 import pytest
 
 import primordia
@@ -173,21 +171,6 @@ def test_a_running_job_writes_the_counts_of_each_of_its_worlds(
     assert last.left_s == 0
     assert last.rate
     assert (done.rate, done.left_s) == (None, None), "a job that is done has no speed"
-
-
-def test_each_world_is_counted_by_itself() -> None:
-    """Deaths are those of all causes; -1 is the tick of a world that is not saturated."""
-    census: Any = SimpleNamespace(
-        tick=np.array([10, 20]),
-        births=np.array([30, 40]),
-        deaths=np.array([[1, 2], [5, 6]]),
-        organism_ticks=np.array([50, 60]),
-        saturated=np.array([-1, 7]),
-    )
-    assert [jobs._counts(census, world, seed) for world, seed in ((0, 8), (1, 9))] == [
-        WorldCounts(seed=8, ticks=10, births=30, deaths=3, organism_ticks=50, saturated=None),
-        WorldCounts(seed=9, ticks=20, births=40, deaths=11, organism_ticks=60, saturated=7),
-    ]
 
 
 def test_the_counts_of_a_job_that_is_done_are_those_of_its_run(

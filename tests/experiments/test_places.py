@@ -21,7 +21,6 @@ from primordia.experiments.campaign import Campaign, begin
 from primordia.experiments.dispatch import live_all
 from primordia.experiments.here import PATIENCE, Here
 from primordia.experiments.plan import Ending, Job
-from tests.commands import here
 from tests.experiments.meadows import write
 
 JOB = Job(3, "a", 0, 1, "a/0")
@@ -206,15 +205,6 @@ def test_a_ray_that_does_not_answer_or_start_is_one_line(
         on_ray._connected(address)
 
 
-def test_the_brackets_of_an_address_are_not_part_of_the_host(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    connected = MagicMock()
-    monkeypatch.setattr("primordia.experiments.on_ray.socket.create_connection", connected)
-    on_ray._check_address("ray://[2001:db8::1]:10001")
-    connected.assert_called_once_with(("2001:db8::1", 10001), on_ray.CONNECT)
-
-
 @pytest.mark.parametrize(
     ("held", "state", "seconds"),
     [(2, "done", 2), (2, "failed", 2), (200, "elsewhere", on_ray.RELEASE + 1)],
@@ -260,30 +250,6 @@ def test_jobs_of_other_processes_are_neither_done_nor_failed(tmp_path: Path) -> 
     assert len(looks) == 2, "also after the last job has ended"
 
 
-@pytest.mark.parametrize(
-    ("states", "status", "says"),
-    [
-        (["done", "failed", "failed", "elsewhere"], 1, "2 jobs failed; give the same command"),
-        (["elsewhere", "done", "elsewhere", "elsewhere"], 0, "3 jobs under way in other processes"),
-        (["elsewhere", "done", "done", "done"], 0, "1 job under way in other processes"),
-    ],
-)
-def test_the_command_ends_with_the_number_of_jobs_that_are_not_done(
-    states: list[str], status: int, says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(dispatch, "place_for", lambda *_, **__: Place(*states))
-    done = here("experiment", write(tmp_path), "--out", tmp_path / "out", "--quiet")
-    assert done.returncode == status
-    lines = done.stderr.splitlines()
-    assert lines[-1].startswith(f"primordia: {says}")
-    failures = [
-        f"primordia: job {number} ({('mild', 'harsh')[number % 2]}) failed: reason {number}"
-        for number, state in enumerate(states)
-        if state == "failed"
-    ]
-    assert lines[:-1] == failures
-
-
 def test_python_raises_the_first_failure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     place = Place("done", "failed", "elsewhere", "failed")
     monkeypatch.setattr(api, "place_for", lambda *_: place)
@@ -309,19 +275,15 @@ def test_python_passes_its_options_to_the_place(
     gathered.assert_not_called()
 
 
-def test_one_job_has_the_interval_and_the_device_of_the_command(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    asked = MagicMock(return_value=Ending(2, "failed", "full"))
-    monkeypatch.setattr(jobs, "ending_of", asked)
-    out = tmp_path / "out"
-    options = ("--checkpoint-every", 7, "--device", "gpu", "--quiet")
-    done = here("experiment", write(tmp_path), "--out", out, "--job", 2, *options)
-    assert (done.returncode, done.stderr) == (1, "primordia: job 2 (mild) failed: full\n")
-    chosen = begin(out)
-    asked.assert_called_once_with(chosen.plan, chosen.jobs[2], out, 7.0, "gpu")
-
-
 def test_a_cluster_has_no_number_of_jobs() -> None:
     with pytest.raises(InputError, match="--jobs is for jobs on this machine"):
         dispatch.place_for(Path("out"), 4, 1, "")
+
+
+def test_the_brackets_of_an_address_are_not_part_of_the_host(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    connected = MagicMock()
+    monkeypatch.setattr("primordia.experiments.on_ray.socket.create_connection", connected)
+    on_ray._check_address("ray://[2001:db8::1]:10001")
+    connected.assert_called_once_with(("2001:db8::1", 10001), on_ray.CONNECT)

@@ -33,17 +33,6 @@ def test_arms_are_cut_into_jobs_which_take_turns(tmp_path: Path) -> None:
     ]
 
 
-@pytest.mark.parametrize(
-    ("task", "name"),
-    [("mill.toml", MILL["task"]), ("CartPole-survival", "CartPole-survival")],
-)
-def test_all_arms_have_the_name_of_their_task(task: str, name: str, tmp_path: Path) -> None:
-    """A task in a file is named in this file."""
-    for arms in (ARMS, [{**arm, "task": task} for arm in ARMS]):
-        plan = read(write(tmp_path, brain=None, task=task, arms=arms), tmp_path / "out")
-        assert [arm.config.task for arm in plan.arms] == [name] * 2
-
-
 @pytest.mark.parametrize(("seeds", "worlds"), [(1, 1), (7, 3), (12, 4), (101, 10), (5, 100)])
 def test_each_world_of_an_arm_is_in_one_job(tmp_path: Path, seeds: int, worlds: int) -> None:
     plan = read(write(tmp_path, seeds=seeds, jobs={"worlds": worlds}), tmp_path / "out")
@@ -295,20 +284,12 @@ def test_a_table_of_an_experiment_is_a_table(name: str, tmp_path: Path) -> None:
     )
 
 
-def test_names_of_arms_differ_by_more_than_case(tmp_path: Path) -> None:
-    """Each arm is a folder, and some file systems take a and A as the same name."""
-    file = write(tmp_path, arms=[{"name": "mild"}, {"name": "Mild", "hazard": 0.05}])
-    complains(here("experiment", file), 2, "'mild' cannot name an arm, or names two arms")
-
-
-@pytest.mark.slow
-def test_one_arm_is_lived_and_not_compared(tmp_path: Path) -> None:
-    out = tmp_path / "out"
-    file = write(tmp_path, arms=[{"name": "mild"}], stop={"ticks": 9})
-    done = here("experiment", file, "--out", out, "--quiet", "--jobs", 1)
-    assert (done.returncode, done.stdout) == (0, "")
-    assert (
-        done.stderr
-        == f"primordia: one arm has nothing to be compared with; see `primordia info {out}`\n"
-    )
-    complains(here("compare", out), 2, "an experiment of two or more arms")
+@pytest.mark.parametrize(
+    ("task", "name"),
+    [("mill.toml", MILL["task"]), ("CartPole-survival", "CartPole-survival")],
+)
+def test_all_arms_have_the_name_of_their_task(task: str, name: str, tmp_path: Path) -> None:
+    """A task in a file is named in this file."""
+    for arms in (ARMS, [{**arm, "task": task} for arm in ARMS]):
+        plan = read(write(tmp_path, brain=None, task=task, arms=arms), tmp_path / "out")
+        assert [arm.config.task for arm in plan.arms] == [name] * 2

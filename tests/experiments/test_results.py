@@ -204,15 +204,6 @@ def begun(folder: Path, name: str, day: int, version: str, **limits: int | None)
     return SimpleNamespace(paths=paths, versions={"jax": version}, progress=progress)
 
 
-def test_the_last_line_gives_what_all_arms_share_once(tmp_path: Path) -> None:
-    arms = [
-        begun(tmp_path, "a", 3, "1", ticks=500, births=None, until=40),
-        begun(tmp_path, "b", 1, "1", ticks=500, births=None, until=40),
-    ]
-    line = "Run on 2023-11-15 with jax 1. Each world stopped at: ticks 500 or until 40."
-    assert results.made("ab", arms) == line
-
-
 def test_the_last_line_names_the_arms_where_they_differ(tmp_path: Path) -> None:
     arms = [
         begun(tmp_path, "a", 0, "1", ticks=500),
@@ -223,3 +214,12 @@ def test_the_last_line_names_the_arms_where_they_differ(tmp_path: Path) -> None:
         "Run on 2023-11-14 with jax 1 (a, c); jax 1, 2 (b)."
         " Each world stopped at: ticks 500 (a, c); ticks 900 (b)."
     )
+
+
+def test_the_last_line_gives_what_all_arms_share_once(tmp_path: Path) -> None:
+    arms = [
+        begun(tmp_path, "a", 3, "1", ticks=500, births=None, until=40),
+        begun(tmp_path, "b", 1, "1", ticks=500, births=None, until=40),
+    ]
+    line = "Run on 2023-11-15 with jax 1. Each world stopped at: ticks 500 or until 40."
+    assert results.made("ab", arms) == line

@@ -2,7 +2,6 @@
 
 import json
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -12,8 +11,7 @@ import tomli_w
 from primordia.errors import InputError
 from primordia.experiments.ledger import Entry, Ledger, WorldCounts
 from primordia.experiments.plan import ArmPlan, Job, Plan, recorded
-from primordia.experiments.status import ArmStatus, CampaignStatus, _interval, status
-from primordia.experiments.view import Clock, line
+from primordia.experiments.status import ArmStatus, _interval, status
 
 
 @pytest.mark.parametrize("worlds", [5, 6, 9, 20, 100])
@@ -23,11 +21,6 @@ def test_the_interval_of_a_median_holds_it_as_often_as_promised(worlds: int) -> 
     intervals = [_interval(sample) or (np.nan, np.nan) for sample in draws]
     held = [low <= np.log(2) <= high for low, high in intervals]
     assert np.mean(held) > 0.93
-
-
-def test_few_worlds_have_no_interval() -> None:
-    assert _interval(np.arange(4.0)) is None
-    assert _interval(np.arange(5.0)) == (0.0, 4.0)
 
 
 def test_the_bounds_of_the_interval_are_equally_far_from_both_ends() -> None:
@@ -142,24 +135,6 @@ def test_a_forged_entry_counts_as_none(forged: dict[str, Any], tmp_path: Path) -
     assert Ledger(tmp_path, [job]).entry(job) == Entry(job=0, arm="a")
 
 
-@pytest.mark.parametrize("before", [0, 10])
-def test_time_left_follows_from_the_jobs_done_since_the_command_began(
-    before: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Jobs that were done before the command, and jobs that failed, do not change the time left."""
-    now: Any = SimpleNamespace(perf_counter=lambda: now.seconds, strftime=lambda _: "12:00:00")
-    now.seconds = 1000.0
-    monkeypatch.setattr("primordia.experiments.view.time", now)
-    clock = Clock()
-
-    def status(done: int) -> CampaignStatus:
-        jobs = {"done": before + done, "running": 0, "failed": 3, "waiting": 30 - done}
-        return CampaignStatus("?", jobs, (), (), ())
-
-    assert clock.left(status(0)) is None
-    now.seconds += 60
-    assert clock.left(status(0)) is None
-    assert clock.left(status(2)) == 28 * 60 / 2
-    now.seconds += 40
-    assert clock.left(status(20)) == 10 * 100 / 20
-    assert line(status(20), clock).endswith("; about 50 s left")
+def test_few_worlds_have_no_interval() -> None:
+    assert _interval(np.arange(4.0)) is None
+    assert _interval(np.arange(5.0)) == (0.0, 4.0)

@@ -9,21 +9,18 @@ from typing import Any
 import matplotlib
 import numpy as np
 import pytest
-from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 import primordia
 from primordia.figures import ages, population, spacetime, style, survival
 from primordia.figures.plot import KNOWN, find
-from primordia.history import series
 from primordia.law.world import Cause
-from primordia.phylogeny.clades import clades_of
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
 from tests.commands import complains, here
-from tests.synthetic import alive, world_of, worlds_of
+from tests.synthetic import world_of, worlds_of
 from tests.worlds import HERD, MEADOW, config
 
 
@@ -40,22 +37,6 @@ def seen(lives: Lives, **settings: Any) -> Any:
     return SimpleNamespace(
         lives=lives, config=config(MEADOW, **{"cells": 24, "seeds": 3, **settings})
     )
-
-
-def test_population_and_mean_age_are_those_of_the_samples(run: Path) -> None:
-    metrics, lives = primordia.Run(run).table("metrics"), Archive(run).lives
-    columns = {
-        name: metrics[name].to_numpy() for name in ("world", "tick", "population", "mean_age")
-    }
-    for number in range(3):
-        in_world = columns["world"] == number
-        world, ticks = lives.of_world(number), columns["tick"][in_world]
-        np.testing.assert_array_equal(
-            series.population(world, ticks), columns["population"][in_world]
-        )
-        np.testing.assert_allclose(
-            series.mean_age(world, ticks), columns["mean_age"][in_world], rtol=1e-5
-        )
 
 
 def test_cohorts_are_quarters_of_each_worlds_births(run: Path) -> None:
@@ -84,40 +65,6 @@ def test_each_of_at_most_forty_bins_has_thirty_dead(dead: int, bins: int) -> Non
     assert ages.quartiles(np.arange(dead), np.ones(dead)).shape == (4, bins)
 
 
-def test_space_time_shows_the_occupant_of_each_cell_and_tick(run: Path) -> None:
-    world = Archive(run).lives.of_world(1)
-    cells, ticks = np.arange(24), np.array([0, 1, 50, 333, 900])
-    occupants = spacetime.occupants(world, cells, ticks)
-    for place, tick in enumerate(ticks.tolist()):
-        expected = np.full(24, spacetime.EMPTY)
-        for row in range(len(world)):
-            if alive(world, row, tick):
-                expected[world.cell[row]] = row
-        np.testing.assert_array_equal(occupants[place], expected)
-
-
-def test_space_time_shows_in_colours_what_became_of_each_line(run: Path) -> None:
-    world = Archive(run).lives.of_world(0)
-    cells, ticks = np.arange(24), np.arange(901)
-    of = clades_of(world)
-    occupants = spacetime.occupants(world, cells, ticks)
-    image = spacetime.picture(world, of, cells, ticks)
-    np.testing.assert_array_equal((image == 1).all(axis=-1), occupants == spacetime.EMPTY)
-    young = colours_in(image[: of.renewals[0]])
-    assert {len(set(each)) for each in young} == {1}, "greys"
-    assert to_rgb(spacetime.YOUNG) in young
-    at_the_end = occupants[-1] >= 0
-    assert colours_in(image[-1]) <= colours_in(spacetime.STRONG)
-    lines = of.lines_at(occupants[-1][at_the_end], ticks[-1:])
-    shown = set(zip(lines.tolist(), map(tuple, image[-1][at_the_end].tolist()), strict=True))
-    assert len(shown) == len(set(lines.tolist())), "one colour each"
-
-
-def colours_in(image: np.ndarray) -> set[tuple[float, ...]]:
-    """Return the colours in an image, without white."""
-    return set(map(tuple, image.reshape(-1, 3).tolist())) - {(1.0, 1.0, 1.0)}
-
-
 @pytest.mark.parametrize(("cells", "shown"), [(24, 24), (512, 512), (513, 257), (1_000_000, 512)])
 def test_space_time_never_has_more_columns_than_a_screen(cells: int, shown: int) -> None:
     world = world_of([(0, 10, True), (11, 0, False)])
@@ -132,9 +79,6 @@ SOMETIMES = {"foraging", "threshold", "investment", "islands", "traits"}
 """Figures of runs in which one can starve, enough mutants were born, replication is an act, or there are
 islands."""
 
-NEVER = {"threshold", "islands"}
-"""Figures that the run of these tests has not."""
-
 
 @pytest.fixture(scope="module")
 def pictures(run: Path) -> list[Path]:
@@ -143,15 +87,6 @@ def pictures(run: Path) -> list[Path]:
     paths = primordia.Run(run).plot()
     assert primordia.Run(run).info() == before
     return paths
-
-
-@pytest.mark.slow
-def test_plot_writes_every_figure_in_two_formats_to_the_runs_folder(
-    run: Path, pictures: list[Path]
-) -> None:
-    names = [f"{name}.{kind}" for name in KNOWN if name not in NEVER for kind in ("png", "svg")]
-    assert pictures == [run / "figures" / name for name in names]
-    assert sorted(path.name for path in (run / "figures").iterdir()) == sorted(names)
 
 
 def test_svg_keeps_text_as_text_and_dots_as_a_picture(pictures: list[Path]) -> None:

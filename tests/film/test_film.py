@@ -19,7 +19,7 @@ from tests.worlds import MEADOW, config
 @pytest.fixture(scope="module")
 def poles(tmp_path_factory: pytest.TempPathFactory) -> primordia.Run:
     path = tmp_path_factory.mktemp("film") / "poles"
-    return primordia.run("CartPole-survival", path, cells=16, stop={"ticks": 110})
+    return primordia.run("CartPole-survival", path, cells=8, hazard=0.002, stop={"ticks": 70})
 
 
 def test_a_world_is_filmed_with_the_life_of_the_oldest_beside_it(
@@ -41,7 +41,7 @@ def test_a_world_is_filmed_with_the_life_of_the_oldest_beside_it(
 
 @pytest.mark.slow
 def test_a_film_by_ticks_of_a_chosen_organism(poles: primordia.Run, tmp_path: Path) -> None:
-    file = poles.film(tmp_path / "film.gif", by="ticks", ticks=(50, 110), organism=3)
+    file = poles.film(tmp_path / "film.gif", by="ticks", ticks=(10, 70), organism=3)
     frames = iio.imread(file)
     assert len(frames) <= 61 + films.STILL
     assert frames.shape[1:3] == (HEIGHT // 2, WIDTH // 2)
@@ -62,8 +62,8 @@ def test_the_film_of_a_fork_counts_the_births_before_it(
     poles: primordia.Run, tmp_path: Path
 ) -> None:
     """An unchanged fork goes on as its source, so both count alike at each tick."""
-    fork = poles.fork(80, tmp_path / "fork", stop={"ticks": 110})
-    ticks = np.arange(80, 111)
+    fork = poles.fork(40, tmp_path / "fork", stop={"ticks": 70})
+    ticks = np.arange(40, 71)
     counts = [
         films.births_until(run.opened(), run.opened().lives, ticks).tolist()
         for run in (poles, fork)

@@ -101,12 +101,6 @@ def test_worlds_at_a_limit_have_no_time_left_and_worlds_at_a_standstill_an_unkno
     assert seconds_left(before, counted(2, tick=ticks, births=births), 500, 10) == left
 
 
-def test_a_world_that_stopped_before_has_no_time_left() -> None:
-    """The first world is at its limit; the second needs 350 ticks more, 25 a second."""
-    before, after = (counted(2, tick=tick) for tick in ([500, 100], [500, 150]))
-    assert seconds_left(before, after, 500) == 14.0
-
-
 def test_time_left_is_that_of_the_world_that_stops_last() -> None:
     """In a second the worlds live 50 and 100 ticks, and the first has 5 births."""
     before = counted(2, tick=[0, 0], births=[10, 10])
@@ -132,3 +126,9 @@ def test_a_saturated_world_has_time_left_unless_the_run_stops_at_saturation(
     before, after = counted(2), counted(2, tick=[100, 200], saturated=saturated)
     assert seconds_left(before, after, 500, saturation=True) == ends
     assert seconds_left(before, after, 500) == goes_on
+
+
+def test_a_world_that_stopped_before_has_no_time_left() -> None:
+    """The first world is at its limit; the second needs 350 ticks more, 25 a second."""
+    before, after = (counted(2, tick=tick) for tick in ([500, 100], [500, 150]))
+    assert seconds_left(before, after, 500) == 14.0

@@ -211,14 +211,6 @@ def test_no_more_ticks_a_second_than_the_limit(limit: float, capacity: float) ->
         assert ticks >= 0.8 * min(limit, capacity) * 20.0 - 1, "and hardly fewer"
 
 
-def test_a_run_that_cannot_keep_up_is_not_given_a_higher_limit(clock: Clock) -> None:
-    """It lives 5 ticks a second, and its limit is 10."""
-    pace = Pace(10)
-    lived(partial(pace, react=clock.sleep), clock, 5.0, 10.0)
-    pace.faster()
-    assert pace.limit is None
-
-
 @pytest.mark.parametrize("quiet", [True, False])
 def test_a_limit_holds_also_where_nothing_is_drawn(
     quiet: bool, clock: Clock, monkeypatch: pytest.MonkeyPatch
@@ -235,3 +227,11 @@ def test_a_limit_holds_also_where_nothing_is_drawn(
 def test_a_quiet_run_without_a_speed_is_not_listened_to() -> None:
     with watching(quiet=True) as listen:
         assert listen is None
+
+
+def test_a_run_that_cannot_keep_up_is_not_given_a_higher_limit(clock: Clock) -> None:
+    """It lives 5 ticks a second, and its limit is 10."""
+    pace = Pace(10)
+    lived(partial(pace, react=clock.sleep), clock, 5.0, 10.0)
+    pace.faster()
+    assert pace.limit is None

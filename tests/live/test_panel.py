@@ -5,8 +5,6 @@ from typing import Any
 import pytest
 from rich.segment import Segment
 
-from primordia.law.world import Cause
-from primordia.live.census import Census
 from primordia.live.panel import (
     Outlook,
     duration,
@@ -126,15 +124,6 @@ def test_causes_of_death_of_all_worlds_are_ordered_by_their_counts() -> None:
     assert row == "died of  900 replaced, 30 time-limit, 30 hazard, 9 fatal"
 
 
-def test_every_cause_has_its_own_name() -> None:
-    for cause in Cause:
-        deaths = [[3 * (each == cause) for each in Cause]]
-        (row, _) = text(panel({}, counted(1, deaths=deaths), [], 80, 9))
-        assert row == f"died of  3 {cause.label}"
-    once = counted(1, deaths=[[1] + [0] * (len(Cause) - 1)])
-    assert text(panel({}, once, [], 80, 9))[0] == f"died of  1 {Cause(0).label}"
-
-
 def bar(filled: int, length: int, shown: str) -> str:
     return f"{'━' * filled}{'╌' * (length - filled)}  {shown}"
 
@@ -157,16 +146,6 @@ def test_the_bar_has_the_share_of_saturated_worlds(
     assert text([saturation(counted(len(saturated), saturated=saturated), 8, 100, width)]) == [
         shown
     ]
-
-
-def test_only_a_saturated_world_is_called_saturated() -> None:
-    def bar_of(each: Census) -> str:
-        (row,) = text([saturation(each, 8, 1000, 80)])
-        return row
-
-    assert "saturated" not in bar_of(counted(alive=[7]))
-    assert "saturated" not in bar_of(counted(alive=[8], calm=[999]))
-    assert "saturated" in bar_of(counted(alive=[7], calm=[3], saturated=[1234]))
 
 
 @pytest.mark.parametrize(

@@ -183,11 +183,6 @@ def test_an_empty_row_is_below_each_tile_of_several_rows() -> None:
     assert [row[:3] for row in rows[:3]] == [" 9 ", "   ", "   "]
 
 
-def test_one_world_alone_fills_the_room() -> None:
-    drawn = [Stage().scene(law(4, 3), three(), {}, alone, Room(4, 1)) for alone in range(3)]
-    assert [text(scene.rows) for scene in drawn] == [["▇·▄·"], ["···▇"], ["▄▄··"]]
-
-
 def test_cells_show_lines_of_descent_where_these_are_followed_and_branches_elsewhere() -> None:
     """Birth numbers need more than 32 bits."""
     far = 2**40

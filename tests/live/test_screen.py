@@ -39,13 +39,8 @@ def screen(made: Engine, keys: str, width: int, height: int) -> list[str]:
 
 @pytest.mark.parametrize("settings", [
     {"cells": 1024, "placement": {"topology": "torus8"}},
-    {"cells": 4, "placement": {"topology": "torus4"}},
     {"cells": 2},
-    {"cells": 1024, "seeds": 40, "placement": {"topology": "torus8"}},
-    *(pytest.param(each, marks=pytest.mark.slow) for each in (
-        {"cells": 5000}, {"cells": 32}, {"cells": 16, "seeds": 200},
-        {"cells": 64, "seeds": 3, "placement": {"topology": "torus8"}},
-    )),
+    pytest.param({"cells": 16, "seeds": 200}, marks=pytest.mark.slow),
 ], ids=str)  # fmt: skip
 def test_screens_are_filled_and_not_overfilled(settings: dict[str, Any]) -> None:
     made = meadow(**settings)

@@ -8,7 +8,9 @@ import pytest
 from PIL import ImageColor
 
 from primordia.engine.engine import Engine
+from primordia.engine.state import State
 from primordia.habitats.contract import Discrete
+from primordia.law.world import World
 from primordia.live import thoughts
 from primordia.live.companion import Companion
 from primordia.live.forms import Room
@@ -16,7 +18,9 @@ from primordia.live.paint import EIGHTHS
 from primordia.live.panel import STRONG
 from primordia.live.words import WORDS
 from primordia.organism.inside import CHANGED, Inside, acting, tints
+from primordia.random.wide import wide
 from tests.live.drawn import colours, text
+from tests.live.posed import look_alive
 from tests.worlds import LEARNERS, config
 
 MARK = tuple((each >> 4) * 17 for each in ImageColor.getrgb(CHANGED))
@@ -32,17 +36,19 @@ def learning() -> Engine:
 def test_a_learner_has_its_outputs_fast_weights_and_changes_below_its_picture(
     learning: Engine,
 ) -> None:
-    limits = learning.limits({"ticks": 10**6})
-    learning.state, _ = learning.chunks.advance(learning.state, limits, 5)
+    look_alive(learning)
+    world, bodies = learning.state
+    organisms = world.organisms._replace(born=wide([0] * learning.law.cells))
     framed, changes = [], []
-    for _ in range(3):
+    for tick in (5, 6, 7):
+        worlds = world.worlds._replace(tick=wide([tick]))
+        learning.state = State(World(organisms, worlds), bodies)
         drawn = Companion().rows(learning, None, Room(60, 24))
         framed.append(MARK in {colours(each)[0] for each in drawn[1] if each.style})
         rows = {name: row for row in text(drawn) for name in WORDS if row.startswith(f"{name} ")}
         assert len(rows["outputs"].split()[1]) == 2
         assert rows["fast weights"].count("▀") == 3 * 4
         changes.append(rows["changes"].removeprefix("changes").strip())
-        learning.state, _ = learning.chunks.advance(learning.state, limits, 1)
     assert changes == ["none in the last 25 ticks", "now", "1 tick ago"]
     assert framed == [False, True, True]
 

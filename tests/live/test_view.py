@@ -161,7 +161,3 @@ def test_the_last_frame_has_neither_keys_nor_words() -> None:
     (rows,) = map(text, drawn)
     assert "quit" not in "\n".join(rows)
     assert "died of" in "\n".join(rows)
-
-
-def test_a_view_limits_the_speed_only_if_asked() -> None:
-    assert view()._pace.limit is None

@@ -7,11 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from primordia.engine.engine import Engine
 from primordia.errors import Trouble
 from primordia.law.events import BIRTHS, DEATHS, Events, Rows
 from primordia.phylogeny.clades import DIES, NO_PARENT, BirthsAndDeaths, Lines, births_and_deaths
-from tests import worlds
 
 Event = tuple[int, int, int]
 """tick, birth number, and parent or DIES"""
@@ -106,19 +104,6 @@ def test_a_founder_after_extinction_takes_nothing_over() -> None:
     lines = followed(events, Lines([], crowd=3))
     assert lines.line_of == {2: 2, 3: 2}
     assert lines.takeovers == []
-
-
-def test_chunks_of_any_length_give_the_same_lines() -> None:
-    outcomes, herd = [], worlds.config(worlds.HERD)
-    for ticks in (7, 2**20):
-        made = Engine(herd)
-        lines, limits = Lines([], crowd=8), made.limits({"ticks": 5000})
-        while made.any_running(limits):
-            made._ticks = ticks
-            lines.follow(births_and_deaths(made.advance(limits), 24, 3)[0])
-        outcomes.append((lines.line_of, lines.takeovers))
-    assert outcomes[0] == outcomes[1]
-    assert outcomes[0][1]
 
 
 def test_the_events_of_a_chunk_are_divided_among_its_worlds() -> None:

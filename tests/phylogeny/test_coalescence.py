@@ -85,19 +85,6 @@ def test_the_tree_of_the_living_is_as_long_as_their_lines(
     assert found.tolist() == [tree_length(lives, tick) for tick in ticks.tolist()]
 
 
-def test_trees_are_traced_across_parts_of_the_records() -> None:
-    """A pedigree of several parts, beside the sum over its genealogy."""
-    lives = moran(30, 10_000)
-    genealogy = Genealogy.of(lives)
-    ticks, _ = genealogy.coalescences()
-    born, end = lives.born[genealogy.rows], 10_000
-    last = np.where(lives.died[genealogy.rows], -1, end)  # when each is left by the last line
-    np.maximum.at(last, genealogy.parent[genealogy.parent >= 0], born[genealogy.parent >= 0])
-    whole = phylogenetic_diversity(lives, np.array([end]))
-    assert whole.tolist() == [(last - born).sum()]
-    assert len(ticks) == 29
-
-
 def test_a_tree_by_hand() -> None:
     """A founder with children at ticks 2 and 4 dies at 5; the first child has one at 6; 9 is the end."""
     lives = lives_of([-1, 0, 0, 1], [0, 2, 4, 6], [5, 9, 9, 9], [True, False, False, False])

@@ -334,10 +334,3 @@ def test_bad_input_is_one_line(family: Path, tmp_path: Path) -> None:
         checkpoint.save(tmp_path / "empty", engine.arrays(), recorder, progress)
     complains(here("phylogeny", tmp_path / "empty", "--out", out), 2, "nothing has lived in it yet")
     assert not out.exists()
-
-
-def test_a_missing_segment_is_one_line(family: Path, tmp_path: Path) -> None:
-    run = Path(shutil.copytree(family / "run", tmp_path / "run"))
-    next((run / "births").iterdir()).unlink()
-    complains(here("phylogeny", run, "--out", tmp_path / "a.csv"), 1, "is missing")
-    assert not (tmp_path / "a.csv").exists()

@@ -8,7 +8,10 @@ import pytest
 
 import primordia
 from primordia.report import lives
+from primordia.report.content import of_run
+from primordia.report.page import page as page_of
 from primordia.runs import loop
+from primordia.runs.archive import Archive
 from tests.report.browser import DESKTOP, Page, browser
 from tests.worlds import HERD, config
 
@@ -29,20 +32,19 @@ def torus(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def shore(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Make a run of two worlds on a torus, with islands of a row and of three rows."""
-    where = tmp_path_factory.mktemp("report") / "shore"
-    islands = [{"name": "dune"}, {"name": "marsh", "share": 3.0, "hazard": 0.02}]
-    habitat = {**TORUS["habitat"], "islands": islands}
-    loop.start(config({**TORUS, "habitat": habitat, "seeds": 2, "stop": {"ticks": 400}}), where)
-    return where
+def shore(torus: Path) -> Archive:
+    """Return the run on a torus as if its rows were islands: the first one, and the other three."""
+    islands = [{"name": "dune"}, {"name": "marsh", "share": 3.0}]
+    run = Archive(torus)
+    run.config = config({**TORUS, "habitat": {**TORUS["habitat"], "islands": islands}})
+    return run
 
 
 @pytest.fixture(scope="session")
 def cart(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Make a run with poles on carts, whose lives can be filmed."""
     where = tmp_path_factory.mktemp("report") / "cart"
-    loop.start(config(cells=16, stop={"ticks": 1500, "until": None}), where)
+    loop.start(config(cells=8, hazard=0.002, stop={"ticks": 1500, "until": None}), where)
     return where
 
 
@@ -61,9 +63,11 @@ def torus_page(torus: Path) -> Path:
 
 
 @pytest.fixture(scope="session")
-def shore_page(shore: Path) -> Path:
+def shore_page(shore: Archive, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Write the page of a run with islands."""
-    return primordia.load(shore).report()
+    file = tmp_path_factory.mktemp("report") / "shore.html"
+    file.write_text(page_of(of_run(shore, filmed=False)), encoding="utf-8")
+    return file
 
 
 @pytest.fixture(scope="session")

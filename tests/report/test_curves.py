@@ -1,16 +1,11 @@
 """The curves of a page are those of the records, counted one by one."""
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from primordia.report import curves
 from primordia.runs.archive import Archive
-
-
-def named(run: Path) -> dict[str, Any]:
-    return {panel["title"]: panel for panel in curves.panels(Archive(run))}
 
 
 def test_middle_and_spread_end_where_fewer_than_half_of_the_worlds_have_a_value() -> None:
@@ -24,35 +19,12 @@ def test_middle_and_spread_end_where_fewer_than_half_of_the_worlds_have_a_value(
     assert kinds["high"] == [5.5, 5.5, 4, None]
 
 
-def test_ages_at_death_are_lifespans_in_order_of_birth(torus: Path) -> None:
-    lives = Archive(torus).lives
-    dead, living, _ = named(torus)["Age at death"]["tables"]
-    for table, group in ((dead, lives.died), (living, ~lives.died)):
-        expected = sorted(
-            (float(f"{rank + 1 + world / 3:.9g}"), max(age, 1))
-            for rank, world, age in zip(
-                lives.rank[group], lives.world[group], lives.lifespan[group], strict=True
-            )
-        )
-        assert list(zip(table["x"], table["curves"][0]["values"], strict=True)) == expected
-
-
-def test_food_is_shown_with_what_keeps_an_organism_alive(torus: Path) -> None:
-    assert {"Food", "Births and deaths", "Mean age of the living"} <= set(named(torus))
-
-
 def test_no_number_is_lost_between_points_of_one_place() -> None:
     table = curves.table(
         np.array([1, 1, 2]), curves.curve("a", np.array([5.0, 6, np.nan]), "#000000")
     )
     assert table["x"] == [1, 2]
     assert table["curves"][0]["values"] == [6, None]
-
-
-def test_a_curve_of_zeros_is_a_curve() -> None:
-    zeros = curves.curve("none", np.zeros(2), "#000000")
-    table = curves.table(np.array([1, 2]), zeros)
-    assert table["curves"] == [{**zeros, "values": [0, 0]}]
 
 
 def test_thinned_curves_keep_their_ends() -> None:
@@ -69,7 +41,7 @@ def test_thinned_curves_keep_their_ends() -> None:
 
 
 def test_axes_of_time_age_and_rate_are_logarithmic(torus: Path) -> None:
-    panels = named(torus).items()
+    panels = {panel["title"]: panel for panel in curves.panels(Archive(torus))}.items()
     scales = {title: (each.get("log_x"), each.get("log_y")) for title, each in panels}
     assert scales["Mean age of the living"] == (True, True)
     assert scales["Age at death"] == (None, True)

@@ -11,12 +11,11 @@ from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.remote.webelement import WebElement
 
 import primordia
-from primordia.report.content import of_run
 from primordia.report.page import page as made
-from primordia.runs.archive import Archive
 from tests.commands import here
 from tests.experiments.meadows import herds
 from tests.report.browser import PHONE, Page, differ
+from tests.report.unpacked import content_of
 
 CANVAS = ".ground canvas"
 
@@ -53,10 +52,9 @@ def test_every_figure_shows_and_the_page_loads_nothing_else(
 
 
 def test_the_buttons_of_a_film_leave_its_panel_free(
-    cart: Path, page: Page, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    cart_page: Path, page: Page, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr("primordia.report.lives.PART", 1.0)
-    content = of_run(Archive(cart))
+    content = content_of(cart_page)
     content["films"]["films"][1]["panel"] = True
     (tmp_path / "page.html").write_text(made(content), encoding="utf-8")
     page.open_file(tmp_path / "page.html")
@@ -124,11 +122,10 @@ def test_each_control_has_a_name_and_shows_its_focus(torus_page: Path, page: Pag
         assert page.script(style) != "none", page.script("return document.activeElement.outerHTML")
 
 
-def test_no_name_of_a_run_is_read_as_html(cart: Path, tmp_path: Path, page: Page) -> None:
+def test_no_name_of_a_run_is_read_as_html(cart_page: Path, tmp_path: Path, page: Page) -> None:
     hostile = "</script><script>document.title = 'hacked'</script><img src=x onerror='hacked()'>"
-    run = Archive(cart)
-    run.config = run.config.model_copy(update={"task": hostile, "about": hostile})
-    (tmp_path / "page.html").write_text(made(of_run(run, filmed=False)), encoding="utf-8")
+    text = made({**content_of(cart_page), "title": hostile, "subtitle": hostile})
+    (tmp_path / "page.html").write_text(text, encoding="utf-8")
     page.open_file(tmp_path / "page.html")
     assert page.text("h1") == hostile
     assert page.driver.title.startswith(hostile)

@@ -18,19 +18,19 @@ COLOURS = style.island_colours(("dune", "marsh"))
 
 
 @pytest.fixture(scope="module")
-def content(shore: Path) -> dict[str, Any]:
-    return of_run(Archive(shore), filmed=False)
+def content(shore: Archive) -> dict[str, Any]:
+    return of_run(shore, filmed=False)
 
 
 def test_the_table_counts_who_lives_on_each_island_and_who_came(
-    shore: Path, content: dict[str, Any]
+    shore: Archive, content: dict[str, Any]
 ) -> None:
-    run, shown = Archive(shore), content["islands"]
+    run, shown = shore, content["islands"]
     table = shown["table"]
     assert table["head"] == list(islands.HEAD)
     assert [row[0] for row in table["rows"]] == [
-        "seed 5, dune", "seed 5, marsh", "seed 6, dune", "seed 6, marsh"
-    ]  # fmt: skip
+        f"seed {seed}, {name}" for seed in (5, 6, 7) for name in ("dune", "marsh")
+    ]
     for number, row in enumerate(table["rows"]):
         world, island = divmod(number, 2)
         lives = run.lives.of_world(world)
@@ -55,8 +55,8 @@ def test_the_curves_of_islands_follow_those_of_the_run(content: dict[str, Any]) 
         assert [curve["name"].split(",")[0] for curve in medians] == [*COLOURS]
 
 
-def test_nodes_of_the_phylogeny_have_their_islands(shore: Path, content: dict[str, Any]) -> None:
-    run = Archive(shore)
+def test_nodes_of_the_phylogeny_have_their_islands(shore: Archive, content: dict[str, Any]) -> None:
+    run = shore
     for number, world in enumerate(content["worlds"]):
         lives = run.lives.of_world(number)
         assert world["islands"] == [
@@ -81,8 +81,8 @@ def test_a_plain_page_has_no_word_on_islands(torus: Path) -> None:
     assert not any("island" in panel["title"] for panel in made["panels"])
 
 
-def test_the_settings_name_the_islands(shore: Path) -> None:
-    words = setting(Archive(shore).config)
+def test_the_settings_name_the_islands(shore: Archive) -> None:
+    words = setting(shore.config)
     assert "divided into 2 islands: dune and marsh." in words
     assert [listed(names) for names in (["a"], ["a", "b"], ["a", "b", "c"])] == [
         "a", "a and b", "a, b and c"
@@ -96,8 +96,8 @@ def test_islands_in_a_browser(shore_page: Path, page: Page) -> None:
         assert page.all(selector)
     rows = page.script("return [...document.querySelectorAll('tbody tr')].map((r) => r.innerText)")
     assert [row.split("\t")[0] for row in rows] == [
-        "seed 5, dune", "seed 5, marsh", "seed 6, dune", "seed 6, marsh"
-    ]  # fmt: skip
+        f"seed {seed}, {name}" for seed in (5, 6, 7) for name in ("dune", "marsh")
+    ]
     assert page.script(
         "return [...document.querySelectorAll('.bands span')].map((b) => [b.textContent, b.style.top])"
     ) == [["dune", "0%"], ["marsh", "25%"]]

@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from primordia.report.page import LIVE, SCRIPTS, embedded, page, policy
+from primordia.report.page import LIVE, embedded, page
 
 HERE = ("#main", "data:,")
 """What the page refers to: its own content, and an icon of no bytes."""
@@ -112,10 +112,6 @@ def test_a_number_that_json_has_not_is_refused() -> None:
         embedded([float("nan")])
 
 
-def test_the_same_content_makes_the_same_bytes() -> None:
-    assert page(content()) == page(content())
-
-
 def test_texts_in_lists_of_any_kind_have_no_control_characters() -> None:
     made = json.loads(embedded([["a\x1b[31m"], ("b\x07", {"c\x1b": ("\x9b",)})]))
     assert made == [["a\\x1b[31m"], ["b\\x07", {"c\\x1b": ["\\x9b"]}]]
@@ -125,15 +121,6 @@ def test_a_page_in_a_file_has_no_script_that_asks_a_server() -> None:
     made = {live: Read(page(content(), live)).texts["script"][-1] for live in (False, True)}
     assert [made[live].count("new EventSource") for live in (False, True)] == [0, 1]
     assert made[True].startswith(made[False])
-
-
-def test_the_policy_changes_with_the_scripts() -> None:
-    assert policy("", ["a"], False) != policy("", ["b"], False)
-
-
-def test_each_script_of_the_page_is_used_once() -> None:
-    assert sorted(path.stem for path in PAGE.glob("*.js")) == sorted({*SCRIPTS, LIVE})
-    assert len(set(SCRIPTS)) == len(SCRIPTS)
 
 
 @pytest.mark.parametrize("path", sorted(PAGE.glob("*.js")), ids=lambda path: path.stem)

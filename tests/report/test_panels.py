@@ -111,15 +111,6 @@ def test_population_and_mean_age_of_a_world_end_with_its_last_tick() -> None:
             assert [each["values"][i] for i in after] == [worlds[0]["values"][i] for i in after]
 
 
-def test_curves_go_on_until_the_last_tick_of_any_world() -> None:
-    """The first of two worlds is the shorter one."""
-    worlds = [world_of(SHORT, ENDS[1]), world_of(LONG, ENDS[0])]
-    panels = named(joined(worlds, np.array([0, 1])))
-    for title in ("Organisms alive", "Mean age of the living"):
-        for table in panels[title]["tables"]:
-            assert table["x"][-1] == ENDS[0]
-
-
 def test_a_mean_age_below_one_tick_is_shown_and_an_age_of_zero_is_not() -> None:
     """At tick 2 one of the two organisms is newborn, and the other is a tick old."""
     world = world_of([(1, 0, False), (2, 0, False)], until=4)
@@ -292,3 +283,12 @@ def test_numbers_of_a_page_have_five_digits_and_no_fraction_if_they_are_whole() 
     values = curves.numbers(np.array([1 / 3, 123456.0, 2.0, np.nan, np.inf]))
     assert values == [0.33333, 123460, 2, None, None]
     assert [type(value) for value in values[1:3]] == [int, int]
+
+
+def test_curves_go_on_until_the_last_tick_of_any_world() -> None:
+    """The first of two worlds is the shorter one."""
+    worlds = [world_of(SHORT, ENDS[1]), world_of(LONG, ENDS[0])]
+    panels = named(joined(worlds, np.array([0, 1])))
+    for title in ("Organisms alive", "Mean age of the living"):
+        for table in panels[title]["tables"]:
+            assert table["x"][-1] == ENDS[0]

@@ -33,12 +33,6 @@ PARENTS = st.lists(st.integers(-1, 30), min_size=1, max_size=40).map(
 """The row of each organism's parent, or -1; parents come before their children."""
 
 
-@given(st.lists(st.integers(0, 2**53)), st.booleans())
-def test_packed_arrays_come_out_as_they_went_in(values: list[int], rising: bool) -> None:
-    given_ = np.array(sorted(values) if rising else values, np.int64)
-    assert unpacked(packed(given_, rising)).tolist() == given_.tolist()
-
-
 @pytest.mark.parametrize(
     ("values", "rising", "kind"),
     [
@@ -82,21 +76,6 @@ def test_space_time_shows_who_was_where_after_each_moment(
         assert len(seen) == len(there), "two organisms in a cell"
         numbers = {cell: int(lives.id[row]) for cell, row in occupants(lives, tick).items()}
         assert {cell: int(facts["number"][at]) for cell, at in seen.items()} == numbers
-
-
-def test_the_lines_of_space_time_have_the_inks_of_the_figure(torus: Path) -> None:
-    lives = Archive(torus).lives.of_world(0)
-    shown = Ground(lives, 24)
-    segments, clades = all_unpacked(shown.data()["segments"]), clades_of(lives)
-    ticks = lives.born[segments["start"]]
-    rows = segments["organism"]
-    codes = spacetime.line_codes(lives, clades, rows[:, None], ticks)[:, 0]
-    for code in np.unique(codes):
-        assert len(set(segments["ink"][codes == code].tolist())) == 1, "a line has one ink"
-    strong = segments["ink"] < len(spacetime.COLOURS)
-    picture = spacetime.picture(lives, clades, np.arange(24), ticks)
-    drawn = picture[np.arange(len(ticks)), segments["column"]]
-    assert (strong == (drawn.min(axis=1) < spacetime.PALE)).all(), "pale in the figure too"
 
 
 @given(PARENTS, st.data())
@@ -149,17 +128,6 @@ def not_crossing(nodes: Nodes) -> bool:
         if parent >= 0 and (between & (left_by[place] < ends)).any():
             return False
     return True
-
-
-def test_the_phylogeny_of_a_run_shows_all_that_live(torus: Path) -> None:
-    lives = Archive(torus).lives.of_world(0)
-    shown = tree(Ground(lives, 24))
-    assert shown is not None
-    living = sorted(node["number"] for node in shown["nodes"] if node["alive"])
-    assert living == lives.id[~lives.died].tolist()
-    for node in shown["nodes"]:
-        assert 0 <= node["start"] <= node["stop"] <= len(lives)
-        assert node["parent"] < 0 or node["start"] <= shown["nodes"][node["parent"]]["stop"]
 
 
 def test_a_film_of_a_torus_shows_every_cell(torus: Path) -> None:

@@ -1,9 +1,7 @@
 """The command and the methods: where a page is written, what it executes, and what is one line."""
 
 import json
-import re
 import shlex
-import shutil
 import sys
 from pathlib import Path
 from types import SimpleNamespace
@@ -18,16 +16,11 @@ from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
 from tests.experiments.meadows import herds
+from tests.report.unpacked import content_of
 from tests.runs.conftest import folder
 from tests.strangers import begun, elsewhere
 
 __all__ = ["folder"]
-
-
-def content(path: Path) -> dict[str, Any]:
-    """Return the content of a page."""
-    (text,) = re.findall(r'<script type="application/json"[^>]*>(.*?)</script>', path.read_text())
-    return json.loads(text)
 
 
 def test_a_page_is_written_into_the_run_or_where_one_says(torus: Path, tmp_path: Path) -> None:
@@ -46,8 +39,8 @@ def test_several_runs_are_one_arm(torus: Path, tmp_path: Path) -> None:
     complains(here("report", str(torus.parent / "tor*"), tmp_path / "more"), 2, "--out FILE.html")
     out = tmp_path / "page.html"
     assert here("report", torus, tmp_path / "more", "--out", out).returncode == 0
-    assert content(out)["subtitle"].endswith("seeds 5 to 7, 9 to 11")
-    names = [world["name"] for world in content(out)["worlds"]]
+    assert content_of(out)["subtitle"].endswith("seeds 5 to 7, 9 to 11")
+    names = [world["name"] for world in content_of(out)["worlds"]]
     assert names == [f"seed {seed}" for seed in (5, 6, 7, 9, 10, 11)]
 
 
@@ -60,14 +53,6 @@ def test_names_that_are_no_page_are_one_line(torus: Path, tmp_path: Path) -> Non
     complains(here("report", tmp_path / "none"), 2, "none is not a run")
 
 
-def test_a_damaged_run_is_one_line(torus: Path, tmp_path: Path) -> None:
-    run = Path(shutil.copytree(torus, tmp_path / "run"))
-    for folder_ in (run / "checkpoints").iterdir():
-        (folder_ / "manifest.json").write_text("{}")
-    complains(here("report", run, "--out", tmp_path / "page.html"), 1, str(run))
-    assert not (tmp_path / "page.html").exists()
-
-
 def test_code_from_elsewhere_is_executed_only_when_trusted(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -75,18 +60,11 @@ def test_code_from_elsewhere_is_executed_only_when_trusted(
     done = here("report", run)
     assert (done.returncode, done.stderr) == (0, "")
     assert "pond" not in sys.modules
-    films = content(run / "report.html")["films"]
+    films = content_of(run / "report.html")["films"]
     assert films["films"] == []
     assert "--trust" in films["missing"]
     assert here("report", run, "--trust").returncode == 0
-    assert "draws no pictures" in content(run / "report.html")["films"]["missing"]
-
-
-def test_long_lives_are_not_filmed(cart: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("primordia.report.lives.LONGEST", {"jax": 1, "host": 1})
-    found = films(Archive(cart))
-    assert found["films"] == []
-    assert "too long for a page" in found["missing"]
+    assert "draws no pictures" in content_of(run / "report.html")["films"]["missing"]
 
 
 def test_the_first_life_in_the_page_of_a_fork_was_born_in_the_fork(cart: Path) -> None:
@@ -114,7 +92,7 @@ def test_the_commands_and_the_settings_in_a_page_live_the_run_again(
 
 def test_a_fork_is_verified_since_it_needs_its_directory(torus: Path, tmp_path: Path) -> None:
     primordia.load(torus).fork(400, tmp_path / "fork")
-    page = content(primordia.load(tmp_path / "fork").report())
+    page = content_of(primordia.load(tmp_path / "fork").report())
     assert page["facts"][0]["commands"] == ["primordia verify fork"]
     assert page["facts"][0]["settings"]["fork.run"] == "torus"
     assert page["worlds"][0]["tree"]["living"] > 0
@@ -126,7 +104,7 @@ def test_an_experiment_is_shown_as_far_as_it_is(tmp_path: Path) -> None:
     complains(here("report", out), 2, "arm harsh", "has not begun")
     assert here("experiment", file, "--out", out, "--job", 1, "--quiet").returncode == 0
     assert here("report", out).returncode == 0
-    page = content(out / "report.html")
+    page = content_of(out / "report.html")
     assert page["title"] == "Is it mild?"
     outcomes, effects = page["arms"]["tables"]
     assert [row[0] for row in outcomes["rows"]] == ["mild", "harsh"]

@@ -129,14 +129,6 @@ def test_no_other_name_leads_anywhere(server: Server, path: str) -> None:
     assert status(server, line, f"Host: localhost:{server.server_port}") == 404
 
 
-def test_no_link_of_a_run_is_followed(run: Path, tmp_path: Path) -> None:
-    (tmp_path / "secret").write_text("secret")
-    (run / "link").symlink_to(tmp_path / "secret")
-    with served(run) as server:
-        assert asked(server, "/link")[0].status == 404
-        assert b"secret" not in asked(server, "/")[1]
-
-
 @pytest.mark.parametrize("method", ["HEAD", "POST", "DELETE", "CONNECT", "BREW"])
 def test_the_page_can_only_be_read(server: Server, method: str) -> None:
     assert status(server, f"{method} / HTTP/1.1", f"Host: localhost:{server.server_port}") == 501

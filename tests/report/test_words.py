@@ -1,15 +1,12 @@
 """The sentences of a page about its run, from invented numbers and lives."""
 
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from primordia.history.info import info
 from primordia.law.world import Cause
 from primordia.report.words import DEATHS, setting, words
-from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
 from tests.report.conftest import TORUS
 from tests.synthetic import world_of, worlds_of
@@ -206,15 +203,3 @@ def test_quarters_are_of_the_births_of_each_world_and_of_a_fork_alone() -> None:
         "In the first quarter of the births since the fork, half of the organisms"
     )
     assert "lived 20 ticks or more; in the last" in fork
-
-
-def test_the_words_of_a_recorded_run_have_its_numbers(torus: Path) -> None:
-    run = Archive(torus)
-    numbers = info(run)
-    about, happened, lives = words(run, numbers)
-    births = sum(world["births"] for world in numbers["worlds"])
-    assert about.startswith("Meadows in which nothing moves. Each of 3 worlds has 24 cells on")
-    assert "no goal and no reward" in about
-    assert "starves" in about
-    assert f"{births:,} organisms were born" in happened
-    assert f"organism {int(run.lives.id[run.lives.lifespan.argmax()]):,} of world" in lives

@@ -2,6 +2,9 @@
 
 import base64
 import gzip
+import json
+import re
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -22,3 +25,9 @@ def all_unpacked(group: dict[str, Any]) -> dict[str, np.ndarray]:
         for name, value in group.items()
         if isinstance(value, dict) and "data" in value
     }
+
+
+def content_of(page: Path) -> dict[str, Any]:
+    """Return the content of a page."""
+    (text,) = re.findall(r'<script type="application/json"[^>]*>(.*?)</script>', page.read_text())
+    return json.loads(text)

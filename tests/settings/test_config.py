@@ -19,7 +19,7 @@ from primordia.settings.base import Settings
 from primordia.settings.fields import setting_fields
 from primordia.settings.tables import from_toml, merged, tasks
 from tests.commands import here
-from tests.worlds import MEADOW, MILL, config
+from tests.worlds import MEADOW, MILL
 
 TASK = "CartPole-survival"
 
@@ -49,7 +49,7 @@ def test_tasks_are_listed() -> None:
 
 
 MANY: list[dict[str, Any]] = [
-    *tasks().values(),
+    *(tasks()[name] for name in (TASK, "Pong-survival", "HalfCheetah-forager-ratchet")),
     MEADOW,
     MILL,
     {**MILL, "metabolism": None, "seasons": []},
@@ -101,14 +101,6 @@ def test_a_file_that_names_a_task_changes_only_what_it_says(tmp_path: Path) -> N
     assert (changed.hazard, changed.mutation["scale"]) == (0.25, 0.5)
     mutation = {**built_in.mutation, "scale": 0.5}
     assert changed == built_in.model_copy(update={"hazard": 0.25, "mutation": mutation})
-
-
-def test_a_file_may_be_a_whole_task(tmp_path: Path) -> None:
-    file = tmp_path / "mine.toml"
-    file.write_text('task = "mine"\n[habitat]\nname = "cartpole"\n')
-    assert load(str(file)) == validated(
-        {"task": "mine", "habitat": {"name": "cartpole"}}, source="test"
-    )
 
 
 def test_flags_override_the_file_and_the_file_overrides_the_task(
@@ -249,9 +241,3 @@ def test_help_shows_the_values_of_a_file_or_else_the_defaults(tmp_path: Path) ->
     assert "values of" not in help_text("--out", tmp_path)
     file.write_text('task = "own"\n[habitat]\nname = "no.such:Habitat"\n')
     assert "--cells" in help_text(file)
-
-
-def test_the_helper_config_changes_the_settings_of_a_task() -> None:
-    assert config(TASK, cells=5, mutation={"scale": 0.5}) == load(
-        TASK, {"cells": 5, "mutation": {"scale": 0.5}}
-    )

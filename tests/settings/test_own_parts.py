@@ -116,12 +116,9 @@ VERSIONS = """{"pond": "1"}"""
 FAULTS = {
     "in JAX": [
         (SENSE, "raise ValueError('deep\\nwater')\n", "sense: ValueError: deep (pond.py, line 19)"),
-        (SENSE, "raise KeyError\n", "Pond fails in sense: KeyError (pond.py, line 19)"),
         (SENSE, "raise StopIteration\n", "Pond fails in sense: StopIteration"),
-        (SENSE, "raise OSError(5, 'x')\n", "Pond fails in sense: OSError: [Errno 5] x"),
         (SENSE, "sys.exit('bye')\n", "Pond fails in sense: SystemExit: bye"),
         (SENSE, "return bodies[:, :1]\n", "gives senses as float32 (32, 1); the"),
-        (SENSE, "return bodies.astype(int)\n", "gives senses as int32 (32, 2)"),
         (SENSE, "return None\n", "gives senses as None"),
         (SENSE, "return 0 if bodies[0, 0] > 0 else 1\n", "sense: TracerBoolConversionError"),
         ("senses_size: int = 2", "senses_size: int = 10**12", "from 1 to 1048576"),
@@ -133,15 +130,12 @@ FAULTS = {
         (WORDS, f"{WORDS}\n    rate: str = 'x'", "has the rate 'x'"),
         (WORDS, f"{WORDS}\n    tallies: str = 'ab'", "has tallies = 'ab'"),
         (VERSIONS, "{'pond': 1}", "has versions = {'pond': 1}"),
-        (VERSIONS, "['pond']", "has versions = ['pond']"),
         ("np.zeros(self.cells, np.int32)", "[1, 2]", "save gives age of shape (2,)"),
     ],
     "brain": [
         (THINK, "return memory, None", "Mind gives its output as None; the contract says float32"),
         (THINK, "return memory", "Mind does not return a pair; return memory and output"),
-        (THINK, "return memory, senses", "Mind gives its output as float32 (32, 4)"),
         ("return memory, (", "return senses, (", "Mind gives its memory as float32 (32, 4)"),
-        (THINK, "sys.exit(3)", "Mind fails in __call__: SystemExit: 3 (pond.py, line 14)"),
         (THINK, "return memory, genome['input']", "Mind fails in __call__: KeyError: 'input'"),
         (BLOCKS, "None", "Mind gives blocks as None"),
         (BLOCKS, "sys.exit('bye')", "Mind fails in blocks: SystemExit: bye (pond.py, line 11)"),

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from primordia.config import Config, load
 from primordia.errors import InputError
-from primordia.settings.tables import from_toml, tasks
+from primordia.settings.tables import tasks
 from primordia.settings.values import DEEPEST, LARGEST, SHOWN, check_values, shown
 from tests.commands import complains, here
 
@@ -215,12 +215,6 @@ def test_a_name_that_breaks_lines_is_escaped(odd: str) -> None:
 @given(mangled())
 def test_thousands_of_files_are_taken_or_refused(tmp_path: Path, text: str) -> None:
     file_is_taken_or_refused(text, tmp_path)
-
-
-@pytest.mark.parametrize("name", tasks())
-def test_what_a_task_was_started_with_is_read_again(name: str, tmp_path: Path) -> None:
-    (tmp_path / "config.toml").write_text(load(name).to_toml(), encoding="utf-8")
-    check_values(from_toml(tmp_path / "config.toml"))
 
 
 def edge(least: float, most: float) -> st.SearchStrategy[float]:

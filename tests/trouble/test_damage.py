@@ -32,7 +32,7 @@ def miscount(path: Path) -> None:
     path.write_text(json.dumps(content))
 
 
-@pytest.mark.parametrize("damage", [flip, truncate, garble, empty, Path.unlink])
+@pytest.mark.parametrize("damage", [flip, truncate, Path.unlink])
 def test_a_checkpoint_with_a_damaged_state_is_skipped(
     run: Path, through: str, damage: Callable[[Path], None]
 ) -> None:
@@ -48,7 +48,7 @@ def test_a_checkpoint_with_a_damaged_state_is_skipped(
     assert "damaged" not in here("info", run).stdout
 
 
-@pytest.mark.parametrize("damage", [flip, miscount, garble, empty, Path.unlink])
+@pytest.mark.parametrize("damage", [miscount, garble, empty])
 def test_a_checkpoint_with_a_damaged_manifest_is_skipped(
     run: Path, through: str, damage: Callable[[Path], None]
 ) -> None:
@@ -60,7 +60,7 @@ def test_a_checkpoint_with_a_damaged_manifest_is_skipped(
 
 
 @pytest.mark.parametrize("where", ["births/000000.parquet", "deaths/000000.parquet", "config.toml"])
-@pytest.mark.parametrize("damage", [flip, truncate, Path.unlink])
+@pytest.mark.parametrize("damage", [flip, Path.unlink])
 def test_damage_to_a_file_that_all_checkpoints_need_is_an_error(
     run: Path, where: str, damage: Callable[[Path], None]
 ) -> None:
@@ -105,13 +105,6 @@ def test_a_run_with_a_changed_configuration_is_refused(run: Path) -> None:
         complains(
             here(command, run), 1, str(config), "changed", "put the file back", "primordia fork"
         )
-
-
-@pytest.mark.parametrize("text", ["", "cells = 'x'", "\x00", "task = 5"])
-def test_a_garbled_configuration_is_an_error(run: Path, text: str) -> None:
-    (run / "config.toml").write_text(text)
-    for command in ("info", "resume", "verify"):
-        complains(here(command, run), 2, str(run / "config.toml"))
 
 
 def test_folders_lost_in_a_copy_are_made_again(run: Path, through: str, tmp_path: Path) -> None:

@@ -2,11 +2,9 @@
 
 import errno
 import os
-import resource
 import shutil
 import subprocess
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -110,24 +108,6 @@ def test_a_disk_that_is_full_from_the_beginning_is_an_error(
             with pytest.raises(Trouble, match="cannot be written: No space left on device"):
                 started(tmp_path / str(writes))
         assert not list(tmp_path.iterdir()), "a start that fails leaves nothing"
-
-
-@contextmanager
-def files_at_most(size: int) -> Iterator[None]:
-    """Limit the size of files that this process writes."""
-    before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, before)
-
-
-def test_a_file_that_cannot_grow_stops_the_run(run: Path, through: str) -> None:
-    with files_at_most(20_000):
-        done = here("resume", run, "--quiet")
-    complains(done, 1, str(run / "checkpoints"), "cannot be written", "File too large")
-    goes_on(run, through)
 
 
 @pytest.fixture

@@ -61,12 +61,11 @@ def test_an_open_tail_names_no_world_cell_or_cause_that_does_not_exist(
 @pytest.mark.parametrize(
     ("name", "count"),
     [
-        *(("organism_ticks", count) for count in (2**63, 2**64 - 2)),
-        *(
-            (name, count)
-            for name in ("tick", "births", "saturated", "fixed_births")
-            for count in (2**53, 2**63, 2**64 - 2)
-        ),
+        ("organism_ticks", 2**63),
+        ("tick", 2**53),
+        ("births", 2**64 - 2),
+        ("saturated", 2**53),
+        ("fixed_births", 2**63),
     ],
 )
 def test_a_world_has_no_count_that_no_run_can_reach(run: Path, name: str, count: int) -> None:

@@ -68,11 +68,6 @@ def test_no_output_takes_the_place_of_a_part_of_a_run(
     assert contents(run) == before
 
 
-def test_an_output_may_lie_in_a_run(run: Path) -> None:
-    assert here("export", run, run / "genome").returncode == 0
-    assert here("plot", run, "--figure", "ages", "--out", run / "mine").returncode == 0
-
-
 @pytest.mark.parametrize("name", ["births", "checkpoints"])
 def test_a_file_in_place_of_a_folder_of_a_run_is_named(run: Path, name: str) -> None:
     files.remove(run / name)

@@ -11,7 +11,6 @@ from primordia import files
 from primordia.engine.state import State
 from primordia.runs import checkpoint, directory, loop
 from tests.commands import begin, complains, here
-from tests.experiments.meadows import SHARED
 from tests.trouble import (
     HALF,
     SMALL,
@@ -23,7 +22,6 @@ from tests.trouble import (
     reseal,
     started,
 )
-from tests.worlds import config
 
 
 def test_a_directory_that_is_taken_is_refused(run: Path, tmp_path: Path) -> None:
@@ -139,26 +137,6 @@ def test_a_run_with_nothing_left_to_do_says_how_to_continue(run: Path, through: 
     info = json.loads(here("info", run, "--json").stdout)
     assert info["ticks"] == TICKS + 1
     assert info["limits"] == {"ticks": TICKS + 1, "births": None, "until": None}
-
-
-@pytest.mark.slow
-def test_saturated_worlds_continue_without_the_limit_of_saturation(tmp_path: Path) -> None:
-    """No body dies in this meadow, and accidents are very rare."""
-    run = tmp_path / "run"
-    stop = {"ticks": 300, "until": "saturation"}
-    loop.start(config({**SHARED, "seeds": 2, "hazard": 1e-6, "stop": stop}), run)
-    for world in worlds(run):
-        assert world["saturation"] == {"tick": world["ticks"], "births": world["births"]}
-        assert world["ticks"] < 300
-    complains(here("resume", run, "--ticks", 400, "--quiet"), 0, "nothing to do", "--until none")
-    more = here("resume", run, "--ticks", 400, "--until", "none", "--quiet")
-    assert (more.returncode, more.stderr) == (0, "")
-    assert {world["ticks"] for world in worlds(run)} == {400}
-
-
-def worlds(run: Path) -> list[dict[str, Any]]:
-    """Return what `info` says of each world."""
-    return list(json.loads(here("info", run, "--json").stdout)["worlds"])
 
 
 def test_zero_seconds_between_checkpoints_means_after_every_chunk(tmp_path: Path) -> None:
