@@ -42,6 +42,7 @@ def test_a_numpy_habitat_is_exact_in_chunks_of_any_length() -> None:
     ("habitat", "kind"), [(CartPole(), "recurrent"), (Mill(), "feed-forward"), (Mill(), "gated")]
 )
 def test_brains_and_bodies_do_not_depend_on_their_number(kind: str, habitat) -> None:
+    """One pole balancer is enough: `matvec` is the same for all brains."""
     brain, sizes = find(kind)(), (habitat.senses_size, habitat.action.size)
     rng, layout = np.random.default_rng(0), brain.layout(*sizes)
     genome = layout.split(rng.normal(size=(1024, layout.length)).astype(np.float32))
@@ -61,7 +62,7 @@ def test_brains_and_bodies_do_not_depend_on_their_number(kind: str, habitat) -> 
         return jax.lax.scan(tick, start, None, length=50)[0]
 
     memory, bodies = lives(genome, words)
-    for n in (1, 31):
+    for n in (1, 31) if kind == "recurrent" else (31,):
         few_memory, few_bodies = lives({k: v[:n] for k, v in genome.items()}, words[:n])
         np.testing.assert_array_equal(few_memory, memory[:n])
         np.testing.assert_array_equal(few_bodies, bodies[:n])

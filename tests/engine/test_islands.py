@@ -126,6 +126,7 @@ def test_islands_have_rates_of_their_own(lived: Lived) -> None:
     np.testing.assert_allclose(seen, [0.02, 0.08], rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_equal_islands_are_a_plain_world() -> None:
     """To the last bit, on a ring: only the borders are drawn."""
     mills = {**MILL, "brain": {"hidden": 4}, "seeds": 2}

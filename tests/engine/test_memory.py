@@ -15,8 +15,9 @@ from tests.toys import HOST_CARTPOLE
 from tests.worlds import MILL, config
 
 
-@pytest.mark.parametrize("settings", [MILL, {**MILL, "seeds": 3, "cells": 40}])
-@pytest.mark.parametrize("host", [False, True])
+@pytest.mark.parametrize(
+    ("settings", "host"), [(MILL, False), ({**MILL, "seeds": 3, "cells": 40}, True)]
+)
 def test_the_bytes_needed_are_those_of_the_state_and_the_lists(
     settings: dict[str, Any], host: bool
 ) -> None:

@@ -10,75 +10,38 @@ import pytest
 from jax import Array
 
 from primordia.compiled import jit, shared
-from primordia.config import Config
 from primordia.law import events as log
 from primordia.law.events import Events, Rows
 from primordia.law.genesis import begin
 from primordia.law.law import Law
 from primordia.law.sample import note_samples
-from tests.worlds import MEADOW, Lived, config, law_of
+from tests.worlds import HERD, MEADOW, Lived, config, law_of
 
-BUSY = {
-    "brain": {"kind": "feed-forward", "hidden": 1},
-    "genesis": "fill",
-    "replication": 0.9,
-    "hazard": 0.4,
-    "sample_every": 1,
-}
-"""Worlds in which a great part of all organisms dies and is born in every tick."""
 LISTS = Events._fields
 
 
-def least(law: Law, which: str) -> int:
-    """Return the length of a list that has room for the fullest tick, and for no second one."""
-    cells = law.worlds * law.cells
-    return (law.worlds if which == "samples" else cells) + log.batch(cells)
-
-
-def leave_least_room(which: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Cut one of the lists of chunks; the others stay long."""
-    whole = log.empty
-
-    def cut(law: Law) -> Events:
-        lists = whole(law)
-        rows = getattr(lists, which)
-        return lists._replace(**{which: rows._replace(rows=rows.rows[: least(law, which)])})
-
-    monkeypatch.setattr(log, "empty", cut)
-
-
-def busy(habitat: str) -> Config:
-    inner = {"inner": "meadow"} if habitat == "Mirror" else {}
-    where = {"name": f"tests.toys:{habitat}", **inner}
-    return config(MEADOW, habitat=where, **BUSY, cells=300, seeds=2)
-
-
-@pytest.mark.parametrize(
-    ("habitat", "which"),
-    [("Meadow", "births"), pytest.param("Mirror", "deaths", marks=pytest.mark.slow)],
-)
-def test_lists_with_the_least_room_lose_nothing(
-    habitat: str, which: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.mark.parametrize("habitat", ["Meadow", pytest.param("Mirror", marks=pytest.mark.slow)])
+def test_full_lists_lose_nothing(habitat: str) -> None:
     """Numbers of births have no gap, nothing dies twice, and each sample counts the births so far."""
-    leave_least_room(which, monkeypatch)
-    lived = Lived(busy(habitat), 30)
+    inner = {"inner": "meadow"} if habitat == "Mirror" else {}
+    where = {**HERD["habitat"], "name": f"tests.toys:{habitat}", **inner}
+    lived = Lived(config({**HERD, "habitat": where}), 1)
+    lived.change({"replication": 0.9, "hazard": 0.4})
+    lived.advance_to(8_000, chunk=10**6)
+    assert len(lived.rows["births"]) > 3, "a chunk ended since lists were full, again and again"
     births, deaths, metrics = (lived.table(name) for name in ("births", "deaths", "metrics"))
-    assert sum(map(len, lived.rows[which])) > 2 * least(lived.engine.law, which), (
-        "it was full again and again"
-    )
     worlds = lived.engine.state.world.worlds
-    alive = np.asarray(lived.engine.state.world.organisms.alive).reshape(2, -1)
-    for world in range(2):
+    alive = np.asarray(lived.engine.state.world.organisms.alive).reshape(3, -1)
+    for world in range(3):
         born, died = (each["id"][each["world"] == world] for each in (births, deaths))
         assert sorted(born) == list(range(int(worlds.births.lo[world])))
         assert len(set(died)) == len(died) == int(worlds.deaths.lo[world].sum())
         assert alive[world].sum() == len(born) - len(died)
         sampled = metrics["world"] == world
-        assert metrics["tick"][sampled].tolist() == list(range(1, 31))
+        assert metrics["tick"][sampled].tolist() == list(range(10, 8_001, 10))
         ticks = births["tick"][births["world"] == world]
-        expected = [(ticks <= tick).sum() for tick in range(1, 31)]
-        assert metrics["births"][sampled].tolist() == expected
+        expected = ticks.searchsorted(range(10, 8_001, 10), side="right")
+        assert metrics["births"][sampled].tolist() == expected.tolist()
 
 
 PAIRS = [("births", 8), ("deaths", 701), ("samples", 8)]

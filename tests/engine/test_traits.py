@@ -65,6 +65,13 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
+def fork(run: Path, tmp_path_factory: pytest.TempPathFactory) -> primordia.Run:
+    """Return a fork in which what lived is unchanged."""
+    out = tmp_path_factory.mktemp("traits") / "fork"
+    return primordia.load(run).fork(200, out, stop={"ticks": TICKS})
+
+
+@pytest.fixture(scope="module")
 def lived() -> Lived:
     return Lived(config(POLES), TICKS, chunk=11)
 
@@ -100,17 +107,17 @@ def _assert_reborn_with_their_traits(lived: Lived) -> None:
     np.testing.assert_array_equal(before, after)
 
 
-def test_the_living_and_the_dead_live_again_in_their_bodies(run: Path, tmp_path: Path) -> None:
-    opened = Archive(run)
-    fork = Archive(primordia.load(run).fork(200, tmp_path / "fork", stop={"ticks": TICKS}).path)
+def test_the_living_and_the_dead_live_again_in_their_bodies(run: Path, fork: primordia.Run) -> None:
+    opened, forked = Archive(run), Archive(fork.path)
     for died in (True, False):
         rows = np.flatnonzero(opened.lives.died == died)
         assert len(rows) > 5
-        for row in rows[-6:]:
+        for row in rows[-3:]:
             life = relive(opened, int(opened.lives.id[row]), int(opened.lives.world[row]))
             assert life.agrees, life.respects
-    row = np.flatnonzero(fork.lives.inherited & (fork.lives.ended > 200))[-1]
-    assert relive(fork, int(fork.lives.id[row]), int(fork.lives.world[row])).agrees
+    lives = forked.lives
+    row = np.flatnonzero(lives.inherited & (lives.ended > 200))[-1]
+    assert relive(forked, int(lives.id[row]), int(lives.world[row])).agrees
 
 
 def test_bodies_are_what_the_genes_of_the_living_say(lived: Lived) -> None:
@@ -171,10 +178,9 @@ def test_traits_of_the_living_are_in_the_summary(run: Path) -> None:
     assert "living, medians over worlds: pole x" in summary({**info, "worlds": 3 * info["worlds"]})
 
 
-def test_ancestors_have_traits_also_before_a_fork(run: Path, tmp_path: Path) -> None:
+def test_ancestors_have_traits_also_before_a_fork(run: Path, fork: primordia.Run) -> None:
     opened, traits = Archive(run), config(POLES).traits
     assert traits is not None
-    fork = primordia.load(run).fork(200, tmp_path / "fork", stop={"ticks": TICKS})
     lives = fork.opened().lives
     organism = int(lives.id[(lives.world == 1) & ~lives.inherited][-1])
     line = fork.ancestors(organism, 1)
@@ -259,7 +265,7 @@ def test_cells_of_the_space_time_picture_have_the_colours_of_traits(run: Path) -
 
 
 def test_a_phylogeny_has_traits_if_they_are_asked_for(
-    run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    run: Path, fork: primordia.Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Those that lived before a fork have theirs from the run that was forked."""
     opened, traits = Archive(run), config(POLES).traits
@@ -270,7 +276,6 @@ def test_a_phylogeny_has_traits_if_they_are_asked_for(
     assert whole is not None
     for number, name in enumerate(traits.names):
         np.testing.assert_allclose(whole[f"trait.{name}"].to_numpy(), factors[:, number], rtol=1e-6)
-    fork = primordia.load(run).fork(150, tmp_path / "fork", stop={"ticks": TICKS})
     again = fork.phylogeny(traits=True, world=1, extant=True)
     expected = primordia.load(run).phylogeny(traits=True, world=1, extant=True)
     assert again is not None

