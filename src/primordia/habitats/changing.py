@@ -165,7 +165,10 @@ class ChangingOnHost(_Changing, AroundHost):
     def open(self, cells: int, watched: bool = False) -> None:
         """Allocate a body for each of N cells; see `HostHabitat.open`."""
         self.inner.open(cells, watched)
-        self._begin, self._act = (shared(each, self.changes, self.action) for each in (begin, act))
+        made = (begin, _begin_again, act)
+        self._begin, self._again, self._act = (
+            shared(each, self.changes, self.action) for each in made
+        )
         self._sense, self._after = (shared(each, self.changes) for each in (sense, _after))
         self._factors_of = shared(factors_of, self.changes, self.scaled)
         self._course = self._begin(np.zeros((cells, WORDS), np.uint32))
@@ -175,8 +178,9 @@ class ChangingOnHost(_Changing, AroundHost):
         """Make fresh bodies in cells (K,); see `HostHabitat.reset`."""
         everywhere = np.zeros((len(self._course.age), WORDS), np.uint32)
         everywhere[cells] = words[:, -WORDS:]  # one shape is compiled once
-        newborn = jnp.isin(jnp.arange(len(everywhere)), cells)
-        self._course = select_bodies(newborn, self._begin(everywhere), self._course)
+        newborn = np.zeros(len(everywhere), bool)
+        newborn[cells] = True
+        self._course = self._again(self._course, newborn, everywhere)
         self._scale()  # the last body of a cell may have left other factors
         return self.inner.reset(cells, words[:, :-WORDS])  # nothing has changed yet
 
@@ -218,6 +222,13 @@ class ChangingOnHost(_Changing, AroundHost):
         )
 
 
+def _begin_again(
+    changes: tuple[Kind, ...], kind: Action, course: Course, newborn: Array, words: Array
+) -> Course:
+    """Return the courses with fresh ones for the newborn, bool (N,)."""
+    return select_bodies(newborn, begin(changes, kind, words), course)
+
+
 def _after(
     changes: tuple[Kind, ...], course: Course, alive: Array, senses: Array
 ) -> tuple[Course, Array]:
@@ -244,11 +255,16 @@ def changes_at(habitat: AnyHabitat, body: Bodies, ages: np.ndarray) -> np.ndarra
     found = inside(habitat, _Changing)
     if found is None:
         return np.zeros(len(ages), bool)
-    age, course = jnp.asarray(ages, jnp.int32), body.course
-    key = course.key.map(lambda word: jnp.broadcast_to(word, age.shape))
-    period = jnp.broadcast_to(course.period, (len(ages), len(found.changes)))
-    comes = [_comes(change, i, key, age, period) for i, change in enumerate(found.changes)]
-    return np.asarray(jnp.stack(comes).any(axis=0) & (age > 0))
+    own = body.course.key, body.course.period
+    return np.asarray(shared(_come_at, found.changes)(*own, np.asarray(ages, np.int32)))
+
+
+def _come_at(changes: tuple[Kind, ...], key: Wide, period: Array, age: Array) -> Array:
+    """Return at which ages int32 (n,) any change comes, from a body's key () and periods (C,)."""
+    keys = key.map(lambda word: jnp.broadcast_to(word, age.shape))
+    periods = jnp.broadcast_to(period, (len(age), len(changes)))
+    comes = [_comes(change, i, keys, age, periods) for i, change in enumerate(changes)]
+    return jnp.stack(comes).any(axis=0) & (age > 0)
 
 
 def is_changing(habitat: AnyHabitat) -> bool:
