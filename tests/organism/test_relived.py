@@ -30,7 +30,7 @@ def test_an_organism_older_than_a_fork_begins_with_the_state_of_the_fork(
             born=np.array([born]), id=np.array([5]), cell=np.array([3])
         ),
     )
-    layout = SimpleNamespace(split=lambda genome: genome.tolist())
+    layout = SimpleNamespace(split=lambda genome: {"all": genome})
     run: Any = SimpleNamespace(
         path="RUN",
         lives=lives,
@@ -41,7 +41,7 @@ def test_an_organism_older_than_a_fork_begins_with_the_state_of_the_fork(
     )
     if begin is None or exact:
         life = RelivedLife.of(run, 5, 1, given)
-        assert (life.stored, life.genome) == (begin, [[5.0, 1.0]])
+        assert (life.stored, life.genome["all"].tolist()) == (begin, [[5.0, 1.0]])
         return
     place = "the fork" if given is None else "the checkpoint"
     with pytest.raises(

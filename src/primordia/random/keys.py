@@ -17,7 +17,7 @@ import numpy as np
 from jax import Array, lax
 from jax.tree_util import register_dataclass
 
-from primordia.random.wide import Wide, from_host, times, zero
+from primordia.random.wide import Wide, times, zero
 
 ROTATIONS = ((13, 15, 26, 6), (17, 29, 16, 24))
 PARITY = 0x1BD11BDA
@@ -62,12 +62,13 @@ _compiled = jax.jit(encrypt)
 
 
 def threefry(key: Wide, counter: Wide) -> Wide:
-    """Return `encrypt`, by NumPy outside of compiled code, where JAX would compile it for each shape."""
+    """Return `encrypt`: NumPy arrays by NumPy outside of compiled code, where JAX would compile it for
+    each shape."""
     if any(isinstance(word, jax.core.Tracer) for word in (*key, *counter)):
         return _compiled(key, counter)
     host: Any = np.asarray
     with np.errstate(over="ignore"):  # NumPy warns of single numbers that wrap, and not of arrays
-        return encrypt(key.map(host), counter.map(host)).map(from_host)
+        return encrypt(key.map(host), counter.map(host)).map(host)
 
 
 @register_dataclass

@@ -62,12 +62,8 @@ def wide(values: object) -> Wide:
     """Return ints or integer arrays of the host as counts; negative numbers wrap (two's complement)."""
     whole = np.asarray(np.asarray(values, dtype=object) % 2**64).astype(np.uint64)
     words = whole >> np.uint64(32), whole & np.uint64(0xFFFFFFFF)
-    return Wide(*(from_host(word.astype(np.uint32)) for word in words))
-
-
-def from_host(word: Any) -> Array:
-    """Return an array or a number of NumPy as a JAX array. JAX would compile code for numbers."""
-    return jnp.asarray(np.asarray(word))
+    # NumPy makes numbers of arrays without axes, for which JAX would compile code.
+    return Wide(*(jnp.asarray(np.asarray(word, np.uint32)) for word in words))
 
 
 def to_host(value: Wide) -> np.ndarray:
