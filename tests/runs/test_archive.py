@@ -1,6 +1,5 @@
 """A run is opened once: each part of it is read, checked and built when it is first used."""
 
-import shutil
 from collections import Counter
 from pathlib import Path
 
@@ -17,7 +16,6 @@ from primordia.history.rebuilding import rebuild_all
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import loop, recorder
 from primordia.runs.archive import Archive
-from primordia.runs.schema import TABLES
 from tests.commands import here
 from tests.trouble import flip
 from tests.worlds import MILL, config
@@ -31,13 +29,6 @@ def mill(tmp_path_factory: pytest.TempPathFactory) -> Path:
     run = tmp_path_factory.mktemp("mill") / "run"
     loop.start(config(SETTINGS), run)
     return run
-
-
-@pytest.fixture(scope="module")
-def poles(tmp_path_factory: pytest.TempPathFactory) -> primordia.Run:
-    """Make a run of a task whose lives can be drawn."""
-    run = tmp_path_factory.mktemp("poles") / "run"
-    return primordia.run("CartPole-survival", run, cells=8, stop={"ticks": 100})
 
 
 @pytest.fixture
@@ -70,24 +61,20 @@ def test_no_file_is_checked_twice(fork: Path, checked: Counter[str]) -> None:
     assert {"config.toml", "origin/state.npz", "births/000000.parquet"} < names
 
 
-@pytest.mark.parametrize("words", [("replay", "--to", 20), ("evaluate", "--games", 2), "export"])
-def test_a_command_opens_its_run_once(
-    words: str | tuple[object, ...], poles: primordia.Run, tmp_path: Path, checked: Counter[str]
-) -> None:
-    checked.clear()
-    name, *options = (words, tmp_path / "genome") if isinstance(words, str) else words
-    done = here(name, poles.path, *options)
-    assert done.returncode == 0, done.stderr
-    assert {*checked.values()} == {1}
+def test_a_command_opens_its_run_once(mill: Path, tmp_path: Path, checked: Counter[str]) -> None:
+    evaluated = "evaluate", mill, "--games", 3, "--ticks", 50
+    for words in (evaluated, ("export", mill, tmp_path / "genome")):
+        checked.clear()
+        done = here(*words)
+        assert done.returncode == 0, done.stderr
+        assert {*checked.values()} == {1}
 
 
-def test_a_call_from_python_opens_its_run_once(
-    poles: primordia.Run, tmp_path: Path, checked: Counter[str]
-) -> None:
-    made = primordia.load(poles.path)
+def test_a_call_from_python_opens_its_run_once(mill: Path, checked: Counter[str]) -> None:
+    made = primordia.load(mill)
     checked.clear()
     oldest = made.oldest()
-    oldest.replay(tmp_path / "life.gif", ages=(0, 20))
+    oldest.genome()
     oldest.policy()
     assert {*checked.values()} == {1}
     made.info()
@@ -172,14 +159,6 @@ def test_a_fork_has_the_state_that_it_began_with(mill: Path, fork: Path) -> None
     assert len(run.lives)
     with pytest.raises(Trouble, match=r"origin/state\.npz was changed or damaged"):
         _ = run.origin
-
-
-@pytest.mark.parametrize("table", TABLES)
-def test_damage_to_any_table_is_noticed(mill: Path, tmp_path: Path, table: str) -> None:
-    run = Archive(shutil.copytree(mill, tmp_path / "run"))
-    flip(run.path / table / "000000.parquet")
-    _, (fault, *_) = run.newest
-    assert f"{table}/000000.parquet was changed or damaged" in fault
 
 
 def test_a_fork_with_damaged_records_is_read_as_it_began(fork: Path) -> None:

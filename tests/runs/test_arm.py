@@ -1,6 +1,7 @@
 """Several runs read as one arm tell what one run of the same worlds tells."""
 
 from dataclasses import fields
+from itertools import product
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -15,7 +16,6 @@ from primordia.errors import InputError
 from primordia.history.foraging import foraging
 from primordia.history.rebuilding import rebuild_all
 from primordia.runs import loop
-from primordia.runs.archive import Archive
 from primordia.runs.manifest import Progress
 from primordia.runs.opening import opened, split_name
 from primordia.runs.records import Records
@@ -25,23 +25,23 @@ from tests.commands import complains, here
 from tests.worlds import MILL, config
 
 SETTINGS: dict[str, Any] = {**MILL, "brain": {"hidden": 4}, "seed": 3, "stop": {"ticks": 400}}
-JOBS = {"b": (0, 2), "a": (2, 1)}
-"""Names of runs, with the first of their worlds and their number; by name they are in another order."""
+JOBS = {"b": 0, "a": 1}
+"""Names of runs, with their worlds; by name they are in another order."""
 
 
-def start(run: Path, first: int, worlds: int, **changes: Any) -> None:
+def start(run: Path, first: int, worlds: int = 1, **changes: Any) -> None:
     settings = {**SETTINGS, "seed": SETTINGS["seed"] + first, "seeds": worlds, **changes}
     loop.start(config(settings), run)
 
 
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Make three worlds in one run, `whole`, and in two, `arm`, and forks of these."""
+    """Make two worlds in one run, `whole`, and in two, `arm`, and forks of these."""
     folder = tmp_path_factory.mktemp("runs")
-    start(folder / "whole", 0, 3)
+    start(folder / "whole", 0, 2)
     primordia.load(folder / "whole").fork(250, folder / "forked" / "whole", seed=80)
-    for name, (first, worlds) in JOBS.items():
-        start(folder / "arm" / name, first, worlds)
+    for name, first in JOBS.items():
+        start(folder / "arm" / name, first)
         primordia.load(folder / "arm" / name).fork(
             250, folder / "forked" / "arm" / name, seed=80 + first
         )
@@ -57,7 +57,7 @@ def both(runs: Path, request: pytest.FixtureRequest) -> tuple[Run, Run]:
 
 def test_an_arm_has_the_numbers_of_one_run(both: tuple[Run, Run]) -> None:
     whole, arm = (run.info() for run in both)
-    assert len(arm["worlds"]) == 3
+    assert len(arm["worlds"]) == 2
     for info in (whole, arm):
         del info["wall_s"]
     assert arm == whole
@@ -82,8 +82,8 @@ def test_an_arm_has_the_lives_and_the_food_of_one_run(both: tuple[Run, Run]) -> 
 
 
 def test_organisms_of_an_arm_are_those_of_one_run(both: tuple[Run, Run]) -> None:
-    """In the last world, which is the first of its job: genome, games, and a life lived again."""
-    whole, arm = (run.oldest(2) for run in both)
+    """In the last world, which is the first of its run: genome, games, and a life lived again."""
+    whole, arm = (run.oldest(1) for run in both)
     assert repr(arm) == repr(whole)
     lives = both[0].lives()
     chosen = [(int(lives.id[row]), int(lives.world[row])) for row in range(0, len(lives), 40)]
@@ -93,11 +93,10 @@ def test_organisms_of_an_arm_are_those_of_one_run(both: tuple[Run, Run]) -> None
     assert next(results) == next(results)
 
 
-@pytest.mark.parametrize("world", range(3))
 def test_an_exported_genome_tells_the_seed_of_its_own_world(
-    both: tuple[Run, Run], world: int, tmp_path: Path
+    both: tuple[Run, Run], tmp_path: Path
 ) -> None:
-    for run in both:
+    for run, world in product(both, range(2)):
         (number,) = run.export(tmp_path / "x.safetensors", world=world)
         about = genomes.about(tmp_path / "x.safetensors")
         assert about == {
@@ -107,19 +106,13 @@ def test_an_exported_genome_tells_the_seed_of_its_own_world(
         }
 
 
-@pytest.mark.slow
-def test_figures_of_an_arm_are_put_in_its_folder(runs: Path) -> None:
-    for path in primordia.load(runs / "arm").plot(world=2, figures=["ages", "space-time"]):
-        assert path.parent == runs / "arm" / "figures"
-
-
 def test_runs_are_compared_as_arms(runs: Path) -> None:
-    start(runs / "other-1", 50, 2)
-    start(runs / "other-2", 70, 1)
+    start(runs / "other-1", 50)
+    start(runs / "other-2", 70)
     compared = primordia.compare(f"mild={runs / 'whole'}", f"later={runs}/other-*")
     again = primordia.compare(runs / "arm", primordia.load([runs / "other-2", runs / "other-1"]))
     assert [arm.name for arm in compared.arms] == ["mild", "later"]
-    assert [arm.worlds for arm in compared.arms] == [3, 3]
+    assert [arm.worlds for arm in compared.arms] == [2, 2]
     assert compared.arms[1].settings == {"seed": 53}
     for one, other in zip(compared.arms, again.arms, strict=True):
         for outcome, measured in one.measured.items():
@@ -151,12 +144,12 @@ def test_a_name_is_told_from_a_path(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
 
 def test_what_is_no_arm_is_refused(runs: Path, tmp_path: Path) -> None:
-    start(tmp_path / "other", 9, 1, hazard=0.5)
-    start(tmp_path / "again", 2, 2)
+    start(tmp_path / "other", 9, hazard=0.5)
+    start(tmp_path / "again", 1)
     one = runs / "arm" / "a"
     with pytest.raises(InputError, match=r"do not belong to one arm: they differ in hazard"):
         opened([one, tmp_path / "other"])
-    with pytest.raises(InputError, match=r"both hold the world of seed 5"):
+    with pytest.raises(InputError, match=r"both hold the world of seed 4"):
         opened([one, tmp_path / "again"])
     with pytest.raises(InputError, match="there is no run"):
         opened([f"{tmp_path}/none-*"])
@@ -166,11 +159,3 @@ def test_what_is_no_arm_is_refused(runs: Path, tmp_path: Path) -> None:
     complains(here("resume", runs / "arm"), 2, single)
     complains(here("verify", runs / "arm"), 2, "is an arm of 2 runs")
     complains(here("fork", runs / "arm", "--at", "9"), 2, "is an arm of 2 runs")
-
-
-def test_a_run_is_not_an_arm(runs: Path) -> None:
-    def kind(place: Path) -> type[Records]:
-        return type(opened([place]))
-
-    assert kind(runs / "arm") is Records
-    assert kind(runs / "arm" / "a") is Archive

@@ -22,7 +22,8 @@ def run(tmp_path: Path) -> Path:
     """The folders of a run, with its settings and a file of the user's own code."""
     for name in (*TABLES, checkpoint.FOLDER, "code/mine"):
         (tmp_path / name).mkdir(parents=True)
-    for name in ("config.toml", "description.json", "code/mine/pond.py", "code/mine/notes.txt"):
+    names = "config.toml", "description.json", "founders.safetensors", "code/mine/pond.py"
+    for name in (*names, "code/mine/notes.txt"):
         (tmp_path / name).write_text(name)
     return tmp_path
 
@@ -77,7 +78,8 @@ def test_a_manifest_names_the_settings_and_the_code(run: Path) -> None:
     save(run, 0)
     stored, faults = checkpoint.newest(run)
     assert faults == []
-    assert list(stored.manifest.inputs) == ["config.toml", "description.json", "code/mine/pond.py"]
+    names = ["config.toml", "description.json", "founders.safetensors", "code/mine/pond.py"]
+    assert list(stored.manifest.inputs) == names
     assert stored.manifest.progress == PROGRESS
     assert stored.manifest.segments == {name: [] for name in TABLES}
     assert {name: sums.shape for name, sums in stored.digests.items()} == dict.fromkeys(

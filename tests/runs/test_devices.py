@@ -13,6 +13,8 @@ import primordia
 from primordia import device
 from primordia.cli.commands import commands
 from primordia.errors import InputError
+from primordia.runs import loop
+from tests.worlds import MILL, config
 
 CARD = "NVIDIA H100 80GB HBM3"
 
@@ -21,33 +23,26 @@ CARD = "NVIDIA H100 80GB HBM3"
 def elsewhere(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run that says that it was made on a device which is not here."""
     run = tmp_path_factory.mktemp("device") / "run"
-    primordia.run("CartPole-survival", run, {"stop": {"ticks": 60, "until": None}}, cells=16)
+    loop.start(config(MILL, brain={"hidden": 4}, seeds=2, stop={"ticks": 60}), run)
     versions = json.loads((run / "versions.json").read_text())
     (run / "versions.json").write_text(json.dumps({**versions, "device": CARD}))
     return run
 
 
-@pytest.mark.parametrize(
-    "command",
-    [
-        ["resume", "--ticks", "80"],
-        ["verify"],
-        ["relive", "0"],
-        ["replay"],
-        ["film"],
-        ["evaluate", "--games", "1"],
-        ["fork", "--at", "20"],
-        ["shadow"],
-    ],
-    ids=lambda words: words[0],
-)
+COMMANDS = (
+    "resume {} --ticks 80", "verify {}", "relive {} 0", "replay {}", "film {}", "evaluate {} --games 1",
+    "fork {} --at 20", "shadow {}",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("command", COMMANDS)
 def test_a_device_that_is_not_here_is_named_in_one_line(
-    command: list[str], elsewhere: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    command: str, elsewhere: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     before = sorted(elsewhere.rglob("*"))
-    name, *flags = command
-    error = CliRunner().invoke(commands, [name, str(elsewhere), *flags]).exception
+    words = [word.format(elsewhere) for word in command.split()]
+    error = CliRunner().invoke(commands, words).exception
     assert isinstance(error, InputError)
     assert f"made on {CARD}" in str(error)
     assert "--device cpu" in str(error)

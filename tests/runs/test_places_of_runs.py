@@ -14,6 +14,7 @@ from primordia.runs.archive import run_of
 from primordia.runs.arm import _refuse_twice
 from primordia.runs.opening import arm_paths, only, run_paths
 from primordia.runs.records import Records, _Joined, _shifted
+from tests.synthetic import worlds_of
 
 
 def begun(path: Path, *, checkpoint: str | None = "checkpoints/000000") -> Path:
@@ -105,6 +106,8 @@ def invented(path: str, worlds: int, start: int) -> Any:
         origin={name: -array for name, array in state.items()}, release=lambda: None,
         versions={"jax": "1", path: "2"}, damaged=[f"{path} 1", f"{path} 2"],
         row_digests={"births": np.full((worlds, 2), start)},
+        lives=worlds_of(*[[(0, 9, True)]] * worlds, until=9),
+        segments=lambda *_: [pa.table({"world": pa.array(range(worlds), pa.int32())})],
     )  # fmt: skip
 
 
@@ -130,13 +133,14 @@ def test_arrays_of_unequal_runs_are_joined_world_by_world(which: Any, kept: list
             joined[name]
 
 
-def test_an_arm_has_the_versions_and_the_damage_of_all_its_runs() -> None:
+def test_an_arm_has_the_versions_damage_rows_and_lives_of_all_its_runs() -> None:
     arm: Any = Records.__new__(Records)
     arm.path, arm._runs, arm.firsts = Path("arm"), (*RUNS,), FIRSTS
     assert arm.versions == {"jax": "1", "a": "2, none", "b": "none, 2", "c": "none, 2"}
     assert arm.damaged == ["a 1", "a 2", "b 1", "b 2", "c 1", "c 2"]
     assert arm.row_digests["births"][:, 1].tolist() == [0, 0, 2, 2, 2, 5]
     assert arm.paths == (Path("a"), Path("b"), Path("c"))
+    assert arm.table("births")["world"].to_pylist() == arm.lives.world.tolist() == [*range(6)]
     found = [run_of(arm, world) for world in range(6)]
     assert [run.path.name for run, _ in found] == ["a", "a", "b", "b", "b", "c"]
     assert [world for _, world in found] == [0, 1, 0, 1, 2, 0]
