@@ -1,6 +1,7 @@
 """Experiments in the repository: their settings are valid, and their scripts report what there is."""
 
 import csv
+import tomllib
 from importlib import import_module
 from pathlib import Path
 
@@ -12,18 +13,21 @@ from safetensors import safe_open
 import primordia
 from primordia import fitting
 from primordia.comparison.late import last_deaths
+from primordia.config import load
 from primordia.experiments.campaign import begin
 from primordia.experiments.file import read
 from primordia.experiments.job import live
+from primordia.experiments.results import COLUMNS
 from primordia.runs import loop
 from primordia.runs.opening import opened
+from primordia.settings.tables import merged
 from tests.worlds import MEADOW, config
 
 EXPERIMENTS = Path(__file__).parent.parent.parent / "experiments"
 FILES = sorted(EXPERIMENTS.glob("*/*.toml"))
-SOME = {"battlezone-fine", "hopper-bodies", "heredity", "halfcheetah-act",
-        "humanoid", "minatar-breakout"}  # fmt: skip
-"""One experiment of most folders; `make slow` reads all."""
+TRACED = {"acrobot", "poles"}
+"""Experiments whose settings are checked by compiled code of seconds; `make slow` reads them."""
+TRIALS = sorted(EXPERIMENTS.glob("*/founders/*.toml"))
 
 
 @pytest.fixture
@@ -35,7 +39,7 @@ def _untraced(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("_untraced")
 @pytest.mark.parametrize(
     "file",
-    [pytest.param(file, marks=() if file.stem in SOME else pytest.mark.slow) for file in FILES],
+    [pytest.param(file, marks=[pytest.mark.slow] * (file.stem in TRACED)) for file in FILES],
     ids=lambda file: file.stem,
 )
 def test_settings_of_every_arm_are_valid_and_limits_are_shared(file: Path) -> None:
@@ -48,6 +52,16 @@ def test_settings_of_every_arm_are_valid_and_limits_are_shared(file: Path) -> No
     assert min(config.seed for config in configs) >= 1000, "smaller seeds are for choosing settings"
     assert configs[0].stop.ticks is not None
     assert len({file.stem for file in FILES}) == len(FILES), "each has a folder of its name"
+
+
+@pytest.mark.usefixtures("_untraced")
+@pytest.mark.parametrize("file", TRIALS, ids=lambda file: file.stem)
+def test_settings_of_trials_are_valid(file: Path) -> None:
+    values = tomllib.loads(file.read_text(encoding="utf-8"))
+    assert values.pop("question").endswith("?")
+    for arm in values.pop("arms"):
+        assert arm.pop("name")
+        load(values["task"], merged(values, arm))
 
 
 @pytest.mark.slow
@@ -181,6 +195,21 @@ def test_a_calibrated_mutation_is_held_against_scales_at_an_equal_share(
     same, worse = (script.against_scales(shares, mutations, place) for place in (3, 4))
     assert same in {"+0.000 (+0.000 to +0.000)", "-0.000 (-0.000 to -0.000)"}
     assert worse == "-0.100 (-0.100 to -0.100)"
+
+
+@pytest.mark.slow
+def test_the_csv_holds_the_outcomes_of_each_world(ponged: Path) -> None:
+    arms = import_module("named").arms(ponged)
+    compared = primordia.compare(*arms)
+    rows = list(csv.DictReader(Path("runs/pong/results.csv").read_text().splitlines()))
+    for row, arm in zip(rows, compared.arms, strict=True):
+        assert row["arm"] == arm.name
+        for outcome, column in COLUMNS.items():
+            measured = arm.measured[outcome]
+            assert (column in row) == (outcome in compared.outcomes)
+            if column in row and measured.known[0]:
+                assert float(row[column]) == pytest.approx(measured.value[0], abs=0.006)
+    assert float(rows[0]["longest_life"]) == primordia.load(arms[0]).lives().lifespan.max()
 
 
 @pytest.mark.slow
