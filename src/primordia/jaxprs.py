@@ -93,11 +93,11 @@ class _Rewriter:
     def _apply(self, equation: JaxprEqn, inputs: list[Any]) -> list[Any]:
         """Return the outputs of an equation without a rule of its own."""
         name, functions = equation.primitive.name, list(_functions(equation))
-        if name in ("while", "scan", "cond"):
-            if any(map(self._concerns, functions)):
+        if any(map(self._concerns, functions)):
+            if name in ("while", "scan", "cond"):
                 return getattr(self, f"_{name}")(equation, inputs)
-        elif functions and _shapes(_opened(functions[0])[0].invars) == _shapes(equation.invars):
-            return self(functions[0], *inputs)  # a call, such as that of a compiled function
+            if _shapes(_opened(functions[0])[0].invars) == _shapes(equation.invars):
+                return self(functions[0], *inputs)  # a call, such as that of a compiled function
         outputs = bind(equation, inputs)
         return outputs if equation.primitive.multiple_results else [outputs]
 

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import NamedTuple
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
@@ -79,15 +80,15 @@ def _of_one(
     parent: int,
 ) -> np.ndarray:
     same, found = np.full(count, parent), np.zeros((0, subjects.players.genomes.shape[1]))
-    rates = {name: jnp.asarray(values[same]) for name, values in operator.rates.items()}
+    rates = {name: jax.device_put(values[same]) for name, values in operator.rates.items()}
     moments = None if remembered is None else Remembered(*(each[same] for each in remembered))
     breed = shared(_children, subjects.law, operator.mutation)
     for brood in range(MOST_CHILDREN):
         key = streams(subjects.players.keys.take(same), wide([brood]), *PURPOSES)
         draws = Draws(key, jnp.arange(count, dtype=jnp.int32))
-        parents = jnp.asarray(subjects.players.genomes[same])
+        parents = jax.device_put(subjects.players.genomes[same])
         children, mutated = breed(
-            Family(parents, jnp.asarray(operator.notes[same]), rates, draws), moments
+            Family(parents, jax.device_put(operator.notes[same]), rates, draws), moments
         )
         found = np.concatenate([found, np.asarray(children)[np.asarray(mutated)]])
         if len(found) >= count:

@@ -51,11 +51,16 @@ def named_leaves(tree: object) -> list[tuple[str, Array]]:
     return [(jax.tree_util.keystr(path, simple=True, separator="."), leaf) for path, leaf in leaves]
 
 
+def copied(array: np.ndarray) -> Array:
+    """Return a copy of an array on JAX's default device, for which nothing is compiled."""
+    return jax.device_put(array, may_alias=False)
+
+
 def filled(
     template: Tree,
     arrays: Mapping[str, np.ndarray],
     prefix: str = "",
-    place: Callable[[np.ndarray], Array] = jnp.array,
+    place: Callable[[np.ndarray], Array] = copied,
 ) -> Tree:
     """Return a tree like the template, but with stored arrays.
 

@@ -1,6 +1,6 @@
 """The kinds of actions that habitats take: choices, amounts, or several of these."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TypeAlias
 
 
@@ -21,9 +21,9 @@ class Continuous:
     """An action is a vector: float32 (N, size). The habitat keeps it within bounds."""
 
     size: int
-    bounds: tuple[tuple[float, ...], tuple[float, ...]] | None = None
+    bounds: tuple[tuple[float, ...], tuple[float, ...]] | None = field(default=None, compare=False)
     """least and largest numbers, (size,) each; beyond them a number has no further effect; None:
-    unknown"""
+    unknown. Actions that differ in nothing else are equal, since laws with them share compiled code."""
 
     @property
     def parts(self) -> "tuple[Continuous]":

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
@@ -39,7 +40,7 @@ def write(path: Path, law: Law, weights: dict[str, np.ndarray], about: dict[str,
         from onnx.helper import set_model_props
     except ImportError:
         raise InputError("an ONNX model needs jax2onnx: pip install 'primordia[onnx]'") from None
-    lone = {name: jnp.asarray(block)[None] for name, block in weights.items()}
+    lone = {name: jax.device_put(block[None]) for name, block in weights.items()}
 
     def tick(senses: Array, *memory: Array) -> tuple[Array, ...]:
         before = memory[0] if memory else jnp.zeros(0, jnp.float32)

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from pathlib import Path
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 
@@ -21,7 +22,7 @@ class Policy:
         """Use a genome, float32 (P,)."""
         self._law = law
         blocks = law.heredity.layout.split(np.array(genome, np.float32)[None])
-        self._genome = {name: jnp.asarray(block) for name, block in blocks.items()}
+        self._genome = {name: jax.device_put(block) for name, block in blocks.items()}
         self._think = shared(type(law.brain).__call__, law.brain)
         self.reset()
 

@@ -7,6 +7,7 @@ count is an int or a uint64 array. A function without a shape in its docstring w
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array, lax
@@ -62,8 +63,7 @@ def wide(values: object) -> Wide:
     """Return ints or integer arrays of the host as counts; negative numbers wrap (two's complement)."""
     whole = np.asarray(np.asarray(values, dtype=object) % 2**64).astype(np.uint64)
     words = whole >> np.uint64(32), whole & np.uint64(0xFFFFFFFF)
-    # NumPy makes numbers of arrays without axes, for which JAX would compile code.
-    return Wide(*(jnp.asarray(np.asarray(word, np.uint32)) for word in words))
+    return Wide(*(jax.device_put(word.astype(np.uint32)) for word in words))
 
 
 def to_host(value: Wide) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-import jax.numpy as jnp
+import jax
 import numpy as np
 
 from primordia.history.climate import PastClimate
@@ -68,7 +68,7 @@ def moved(run: Records, players: Players, worlds: np.ndarray, island: int) -> Pl
     """
     cells = np.full(len(worlds), run.config.islands.bounds[island])
     climate = PastClimate(run).of_cells(worlds, cells, run.ends[worlds])
-    rates = Rates.of({name: jnp.asarray(values) for name, values in climate.items()})
+    rates = Rates.of({name: jax.device_put(values) for name, values in climate.items()})
     return players._replace(rates=rates, island=np.full(len(worlds), island))
 
 
@@ -84,6 +84,6 @@ def _players(
     climate: Mapping[str, np.ndarray],
     cells: np.ndarray,
 ) -> Players:
-    rates = Rates.of({name: jnp.asarray(values) for name, values in climate.items()})
+    rates = Rates.of({name: jax.device_put(values) for name, values in climate.items()})
     island = run.config.islands.of_cells(cells)
     return Players(run.law, run.config.build_habitat(), genomes, keys, rates, island)

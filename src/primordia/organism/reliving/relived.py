@@ -112,7 +112,7 @@ class RelivedLife:
                 " save bodies"
             )
         own = law.heredity.layout.split(np.array(genome[None]))
-        blocks = {name: jnp.asarray(block) for name, block in own.items()}
+        blocks = {name: jax.device_put(block) for name, block in own.items()}
         return cls(run, run.config, law, habitat, blocks, record, stored)
 
     @property
@@ -168,7 +168,7 @@ class RelivedLife:
             memory = held["world.organisms.memory"]
             if stretch is not None:
                 self._check(stretch)
-        return jnp.asarray(memory)
+        return jax.device_put(memory)
 
     def stretches(self, watched: bool = False) -> Generator[Stretch, None, None]:
         """Live the whole life in order, and yield it some ticks at a time.
@@ -219,14 +219,14 @@ class RelivedLife:
         """Return a stretch with the accidents of this cell, drawn from the world's seed."""
         if not self.law.has_hazard:
             return stretch
-        cell = jnp.asarray(self.record.cell)
+        cell = jax.device_put(self.record.cell)
         struck = np.asarray(shared(_struck)(self._seed, wide(ticks), cell, climate["hazard"]))
         struck = struck[: len(stretch.tick)] & (stretch.cause < 0)
         return stretch._replace(cause=np.where(struck, np.int32(Cause.HAZARD), stretch.cause))
 
     def _alone(self, watched: bool) -> LifeInJax | LifeOnHost:
         """Return the stepper of brain and body, with a new habitat."""
-        mind = Mind(self.genome, self._seed, jnp.asarray(self.record.cell))
+        mind = Mind(self.genome, self._seed, jax.device_put(self.record.cell))
         habitat = at(self.config.build_habitat(), int(self.record.cell[0]))
         if habitat.kind == "host":
             return LifeOnHost(self.law, mind, habitat, watched)
@@ -237,12 +237,12 @@ class RelivedLife:
         if self.stored is not None:
             return self._restored(alone, self.stored)
         key = stream(self._seed, Purpose.BODY, wide(self.record.born))
-        cell = jnp.asarray(self.record.cell)
+        cell = jax.device_put(self.record.cell)
         words = words_of(self.law, self.genome, key, cell, self.habitat.words)
         if self.law.act is None:
             store = to_fixed_point(self._climate(np.array([self.begins]))["metabolism.store"])
         else:
-            store = jnp.asarray(self.run.endowments_of(self.record))
+            store = jax.device_put(self.run.endowments_of(self.record))
         vitals = Vitals(store, jnp.zeros(1, jnp.int32))
         return Instant(self.memory, vitals, alone.embody(words))
 
@@ -254,7 +254,7 @@ class RelivedLife:
 
     def _own(self, arrays: Mapping[str, np.ndarray], name: str) -> Array:
         """Return the organism's own values of an array of a state, (1, ...)."""
-        return jnp.asarray(arrays[f"world.organisms.{name}"][self._place(arrays)])
+        return jax.device_put(arrays[f"world.organisms.{name}"][self._place(arrays)])
 
     def _place(self, arrays: Mapping[str, np.ndarray]) -> list[int]:
         return [place_in(arrays, int(self.record.id[0]), self.world)]
@@ -318,7 +318,7 @@ class RelivedLife:
     def _climate(self, ticks: np.ndarray) -> Climate:
         """Return the settings in force in each tick, float32 (n,) each."""
         itself = self.record.take(np.zeros(len(ticks), int))
-        return jax.tree.map(jnp.asarray, self._past.of_lives(itself, ticks))
+        return jax.device_put(self._past.of_lives(itself, ticks))
 
 
 def _as_stored(alone: LifeInJax | LifeOnHost, instant: Instant) -> dict[str, np.ndarray]:
