@@ -12,6 +12,7 @@ import numpy as np
 
 from primordia.assays.subjects import GAMES, TICKS
 from primordia.assays.transplant import everywhere, islands_of
+from primordia.history import series
 from primordia.history.rebuilding import descent
 from primordia.history.series import plain, spaced
 from primordia.law.world import BirthCause
@@ -151,7 +152,7 @@ def _line(
     games, ticks, most = manner
     world, islands = int(run.lives.world[row]), run.config.islands
     line = descent(run.lives, int(run.lives.id[row]), world)
-    places = np.unique(np.linspace(0, len(line) - 1, min(most, len(line))).astype(int))
+    places = series.places(len(line), most)
     chosen = run.lives.take(line[places])
     players = players_of(run, [(int(number), world) for number in chosen.id])
     fresh = stream(wide(run.world_seeds[[world]]), Purpose.REBIRTH, wide(run.lives.id[[row]]))

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from primordia.assays.subjects import GAMES, TICKS, of_run
-from primordia.history import pedigree
+from primordia.history import pedigree, series
 from primordia.history.islands import names_of
 from primordia.history.rebuilding import descent
 from primordia.law.world import BirthCause
@@ -138,8 +138,7 @@ def line(
     """
     rows = descent(run.lives, organism, world)
     changed = _changed(run, rows)
-    places = np.unique(np.linspace(0, len(changed) - 1, min(most, len(changed))).astype(int))
-    chosen = changed[places]
+    chosen = changed[series.places(len(changed), most)]
     subject = of_run(run, [(organism, world)], habitat)
     same = subject.players.take(np.zeros(len(chosen), int))
     lived = {

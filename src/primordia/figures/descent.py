@@ -5,6 +5,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from primordia.figures import style
+from primordia.history import series
 from primordia.phylogeny.descent import Ancestors
 
 CURVES = 7
@@ -54,7 +55,7 @@ def _changes(axes: Axes, found: Ancestors) -> None:
 
 def _shares(axes: Axes, found: Ancestors) -> None:
     """Draw the share of the living that descends from each of some ancestors, since its birth."""
-    places = np.unique(np.linspace(0, len(found.line) - 1, CURVES).astype(int))
+    places = series.places(len(found.line), CURVES)
     ticks, shares = found.census.ticks, found.shares(places)
     key = {}
     for number, (place, share) in enumerate(zip(places, shares.T, strict=True)):

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from primordia.figures import style
 from primordia.habitats.contract import Ability
+from primordia.history import series
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.phylogeny.descent import Ancestors
 from primordia.runs.records import Records
@@ -31,7 +32,7 @@ def draw(run: Records, found: Ancestors) -> Figure | None:
     lived = np.flatnonzero(found.line.lifespan > 0)
     if found.traits is None or not len(lived) or run.habitat.lacks(Ability.PICTURE):
         return None
-    places = lived[np.unique(np.linspace(0, len(lived) - 1, COUNT).astype(int))]
+    places = lived[series.places(len(lived), COUNT)]
     columns = min(len(places), COLUMNS)
     rows = -(-len(places) // columns)
     figure = Figure(figsize=(style.PAGE, (1.35 + 0.1 * min(len(found.traits), TRAITS)) * rows))

@@ -10,6 +10,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter
 
 from primordia.config import Config
 from primordia.figures import style
+from primordia.history import series
 from primordia.history.traits import factors_of
 from primordia.phylogeny.clades import Clades, clades_of, crowd_size
 from primordia.runs.lives import Lives
@@ -46,7 +47,7 @@ def draw(run: Records, world: int) -> Figure:
     names = config.traits.names[:TRAITS] if config.traits else ()
     figure = Figure(figsize=(style.COLUMN * (1 + len(names)), 4.8))
     axes, *others = figure.subplots(1, 1 + len(names), squeeze=False)[0]
-    births = np.unique(np.linspace(0, len(here) - 1, ROWS).astype(np.int64))
+    births = series.places(len(here), ROWS)
     cells = np.arange(0, config.cells, -(-config.cells // COLUMNS))
     clades, ticks = clades_of(here), here.born[births]
     extent = (-0.5, config.cells - 0.5, len(here) + 0.5, 0.5)

@@ -119,6 +119,11 @@ def _sum_first(values: np.ndarray, counts: np.ndarray) -> np.ndarray:
     return np.append(0, np.cumsum(values))[counts]
 
 
+def places(count: int, most: int) -> np.ndarray:
+    """Return at most `most` of `count` places, evenly spaced from the first to the last, int64."""
+    return np.linspace(0, count - 1, min(most, count)).astype(np.int64)
+
+
 def spaced(rows: np.ndarray, most: int) -> np.ndarray:
     """Return at most `most` of the rows, each in the middle of one of equal parts, int64."""
     parts = min(most, len(rows))

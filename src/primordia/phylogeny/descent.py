@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from primordia.errors import InputError
+from primordia.history import series
 from primordia.history.ancestry import children, nearest
 from primordia.history.islands import names_of
 from primordia.history.rebuilding import bodies, changes, descent
@@ -112,7 +113,7 @@ class Ancestors:
         lived = np.maximum(self.line.lifespan, 1)
         gain = np.append(0.0, np.log(lived[1:] / lived[:-1]))
         chosen = {0, count - 1, *np.argsort(-gain, kind="stable")[: most // 2 - 1].tolist()}
-        spaced = np.linspace(0, count - 1, most).astype(int).tolist()
+        spaced = series.places(count, most).tolist()
         others = [place for place in spaced if place not in chosen]
         wanted = most - len(chosen)
         return np.array(sorted(chosen | set(others[:: -(-len(others) // wanted)][:wanted])))

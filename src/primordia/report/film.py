@@ -6,6 +6,7 @@ import numpy as np
 
 from primordia.config import Config
 from primordia.figures.spacetime import EMPTY, line_codes, occupants
+from primordia.history import series
 from primordia.report.ground import Ground
 from primordia.report.packed import packed
 
@@ -30,7 +31,7 @@ def film(ground: Ground, config: Config) -> dict[str, Any] | None:
     count = min(PICTURES, BYTES // ground.share // config.cells, len(ground.lives))
     if rows == 1 or count < 2:
         return None
-    places = np.unique(np.linspace(0, len(ground.lives) - 1, count).astype(np.int64))
+    places = series.places(len(ground.lives), count)
     ticks = ground.lives.born[places]
     pictures = _pictures(ground, ticks)
     return {

@@ -19,6 +19,7 @@ from primordia.figures.spacetime import (
     line_inks,
     occupants,
 )
+from primordia.history import series
 from primordia.phylogeny.clades import Clades, clades_of, crowd_size
 from primordia.report.packed import packed
 from primordia.runs.lives import Lives
@@ -61,7 +62,7 @@ class Ground:
         if births <= WHOLE // self.share:
             return np.arange(births)
         count = max(SEEN // self.share // len(self.shown), 2)
-        return np.unique(np.linspace(0, births - 1, min(count, births)).astype(np.int64))
+        return series.places(births, count)
 
     @property
     def whole(self) -> bool:
