@@ -10,8 +10,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from primordia.comparison import late
-from primordia.experiments import results
+from primordia.experiments import late, results
 from primordia.organism.reliving import diary
 from primordia.organism.reliving.instant import Stretch
 from primordia.phylogeny.table import table

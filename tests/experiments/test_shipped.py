@@ -12,11 +12,11 @@ from safetensors import safe_open
 
 import primordia
 from primordia import fitting
-from primordia.comparison.late import last_deaths
 from primordia.config import load
 from primordia.experiments.campaign import begin
 from primordia.experiments.file import read
 from primordia.experiments.job import live
+from primordia.experiments.late import last_deaths
 from primordia.experiments.results import COLUMNS
 from primordia.runs import loop
 from primordia.runs.opening import opened

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from primordia import files
-from primordia.comparison import late
 from primordia.comparison.comparison import Comparison, compare
 from primordia.comparison.contrast import Contrast
 from primordia.comparison.measured import Measured
@@ -24,6 +23,7 @@ from primordia.comparison.tables import (
     setting_text,
     spread_text,
 )
+from primordia.experiments import late
 from primordia.figures import style
 from primordia.figures.comparison import draw
 from primordia.history.extinctions import Extinctions, extinctions_of

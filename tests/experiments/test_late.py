@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from primordia.comparison.late import last_deaths
+from primordia.experiments.late import last_deaths
 from primordia.experiments.results import world_rows
 from tests.synthetic import worlds_of
 
