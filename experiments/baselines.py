@@ -14,10 +14,12 @@ and CSV; if the experiment's own games are there, its organisms stand in the sam
 
     python experiments/baselines.py --seed 0 --seeds 5 experiments/atari/pong.toml
 
-prints the same for other seeds and writes no table. Each search is kept in `runs/NAME-baselines`, so an
-interrupted command goes on where it was; delete the folder after changes here. The strategy's settings
-below were chosen in a few trials on seeds below 1,000 of MinAtar. CartPole's table, which names its
-settings, is older.
+prints the same for other seeds and writes no table. Each search is kept in `results/searches`, or in
+`runs/searches` if its seed is below 1,000. So an interrupted command goes on where it was. A search is
+made again if the task's settings change; delete its file after changes of this script.
+
+The strategy's settings below were chosen in a few trials on seeds below 1,000 of MinAtar. CartPole's
+table, which names its settings, is older.
 """
 
 import argparse
@@ -28,6 +30,7 @@ from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, NamedTuple
+from zlib import crc32
 
 import jax
 import numpy as np
@@ -173,11 +176,16 @@ class Trial(NamedTuple):
 
 def rows_of(trial: Trial) -> list[dict[str, Any]]:
     """Return what a search found, a row for each way of playing; it is kept for the next time."""
-    kept = Path("runs", f"{trial.file.stem}-baselines", f"{trial.method} {trial.seed}.json")
-    if not kept.exists():
+    folder = trial.file.parent / "results" if trial.seed >= SEED else Path("runs")
+    name = f"{trial.file.stem}-{trial.method.replace(' ', '-')}-{trial.seed}.json"
+    kept = folder / "searches" / name
+    settings = f"{crc32(reference(trial.file).to_toml().encode()):08x}"
+    known = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}
+    if known.get("settings") != settings:
+        known = {"settings": settings, "rows": searched(trial)}
         kept.parent.mkdir(parents=True, exist_ok=True)
-        write_text(kept, json.dumps(searched(trial)))
-    return json.loads(kept.read_text(encoding="utf-8"))
+        write_text(kept, json.dumps(known) + "\n")
+    return known["rows"]
 
 
 def searched(trial: Trial) -> list[dict[str, Any]]:
