@@ -102,10 +102,11 @@ def words_of(law: Law, genome: Genome | None, key: Wide, cells: Array, words: in
 
 def body_words(key: Wide, cells: Array, words: int) -> Array:
     """Return random words for bodies, from keys (N,) and cells within worlds (N,): uint32 (N, words)."""
-    draws = jnp.arange(-(-words // 2), dtype=jnp.uint32)[:, None]
+    draws: Any = np.arange(-(-words // 2), dtype=np.uint32)[:, None]
     # Cells are the last axis, which compilers turn into vector instructions.
     pairs = bits(key, cells, draws)
-    return jnp.concatenate(pairs, axis=0)[:words].T
+    library: Any = np if isinstance(pairs.lo, np.ndarray) else jnp
+    return library.concatenate(pairs, axis=0)[:words].T
 
 
 def initial_climate(law: Law, count: int, library: Any = np) -> dict[str, Any]:

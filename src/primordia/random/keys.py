@@ -9,6 +9,7 @@ take and return arrays of shapes that broadcast.
 
 from dataclasses import dataclass, field
 from enum import IntEnum
+from functools import partial
 from typing import Any
 
 import jax
@@ -64,11 +65,12 @@ _compiled = jax.jit(encrypt)
 def threefry(key: Wide, counter: Wide) -> Wide:
     """Return `encrypt`: NumPy arrays by NumPy outside of compiled code, where JAX would compile it for
     each shape."""
-    if any(isinstance(word, jax.core.Tracer) for word in (*key, *counter)):
-        return _compiled(key, counter)
-    host: Any = np.asarray
+    traced = any(isinstance(word, jax.core.Tracer) for word in (*key, *counter))
+    words: Any = partial(jnp.asarray if traced else np.asarray, dtype=np.uint32)
+    if traced:
+        return _compiled(key.map(words), counter.map(words))
     with np.errstate(over="ignore"):  # NumPy warns of single numbers that wrap, and not of arrays
-        return encrypt(key.map(host), counter.map(host)).map(host)
+        return encrypt(key.map(words), counter.map(words)).map(words)
 
 
 @register_dataclass
@@ -104,7 +106,8 @@ def streams(seed: Wide, tick: Wide, *purposes: Purpose) -> Streams:
     """
     tick_key = threefry(seed, tick)
     numbers = np.array(purposes, np.uint32).reshape(-1, *[1] * tick_key.lo.ndim)
-    return Streams(threefry(tick_key, Wide(jnp.asarray(numbers), jnp.uint32(0))), purposes)
+    counter: Any = numbers, np.uint32(0)
+    return Streams(threefry(tick_key, Wide(*counter)), purposes)
 
 
 def stream(seed: Wide, purpose: Purpose, tick: Wide) -> Wide:
@@ -114,8 +117,8 @@ def stream(seed: Wide, purpose: Purpose, tick: Wide) -> Wide:
 
 def bits(stream: Wide, cell: Array, index: Array | int = 0) -> Wide:
     """Return two words for a cell; another `index` gives another draw of the same stream and cell."""
-    cell = jnp.asarray(cell, jnp.uint32)
-    return threefry(stream, Wide(cell, jnp.asarray(index, jnp.uint32)))
+    counter: Any = cell, index
+    return threefry(stream, Wide(*counter))
 
 
 def bits_if(needed: Array, stream: Wide, cell: Array, index: Array | int = 0) -> Wide:
