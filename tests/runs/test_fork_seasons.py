@@ -67,11 +67,12 @@ def looks_of(at: int, old: list[dict[str, Any]], new: list[dict[str, Any]]) -> A
 def test_each_new_ratchet_looks_at_multiples_of_its_period_and_counts_from_the_fork(
     at: int,
 ) -> None:
-    looks = looks_of(at, [], [ratchet(0.4), {**ratchet(0.4), "every": 7}])
-    assert looks.wait.tolist() == [[10 - at % 10, 7 - at % 7]] * 2
-    assert to_host(looks.food).tolist() == [[each] * 2 for each in COUNTS["food"]]
+    """Three ratchets of two worlds."""
+    looks = looks_of(at, [], [{**ratchet(0.4), "every": every} for every in (10, 7, 3)])
+    assert looks.wait.tolist() == [[10 - at % 10, 7 - at % 7, 3 - at % 3]] * 2
+    assert to_host(looks.food).tolist() == [[each] * 3 for each in COUNTS["food"]]
     assert to_host(looks.organism_ticks).tolist() == [
-        [each] * 2 for each in COUNTS["organism_ticks"]
+        [each] * 3 for each in COUNTS["organism_ticks"]
     ]
 
 
