@@ -173,12 +173,11 @@ class Arcade:
         self._fill_row(cell)
 
     def _fill_row(self, cell: int) -> None:
-        """Fill the cell's row with the present state, and no points."""
+        """Fill the cell's row with the present state. Points are those of a step."""
         (ale, ram), arrays = self._consoles[cell], self._arrays
         ale.getRAM(ram)
         if self._screen:
             ale.getScreenRGB(self._screen[cell])
-        arrays["points"][cell] = 0
         arrays["lives"][cell] = ale.lives()
         arrays["game_over"][cell] = ale.game_over(with_truncation=False)
 
