@@ -130,6 +130,15 @@ def test_limits_are_settings(change: dict, state: list, fatal: bool) -> None:
     assert bool(outcome.fatal[0]) is fatal
 
 
+def test_the_cart_is_drawn_where_it_is() -> None:
+    """Its middle moves from 60 pixels before the left edge to 60 before the right one."""
+    cart = np.array([35, 57, 91])
+    for x, middle in ((-2.4, 60), (0.0, 320), (1.2, 450), (2.4, 580)):
+        picture = np.asarray(draw(np.array([x, 0, 0, 0], np.float32), 1, 2.4).convert("RGB"))
+        columns = np.flatnonzero((np.abs(picture.astype(int) - cart).sum(axis=2) < 20).any(axis=0))
+        assert abs((columns[0] + columns[-1]) / 2 - middle) < 4
+
+
 def coloured(picture: np.ndarray, colour: tuple[int, int, int]) -> tuple[np.ndarray, np.ndarray]:
     """Return rows and columns of the pixels of a colour."""
     rows, columns = np.nonzero(np.abs(picture.astype(int) - colour).sum(axis=2) < 20)

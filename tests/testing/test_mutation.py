@@ -24,6 +24,10 @@ def test_mutations_that_keep_their_contract(name: str) -> None:
     check_mutation(mutations.find(name)())
 
 
+def test_a_mutation_must_say_how_it_makes_children_and_founders() -> None:
+    assert Mutation.__abstractmethods__ == {"inherit", "founders"}
+
+
 @pytest.mark.slow
 def test_a_mutation_with_settings_for_the_blocks_of_a_layout() -> None:
     """It is the Gaussian one, whose contract is checked with settings for some blocks and for all."""
