@@ -50,6 +50,11 @@ def test_a_grid_has_height_width_and_channels(shape: tuple[int, ...], grid: Any)
     assert Senses(None, pair, squash=False).grid is None
 
 
+def test_any_numbers_are_in_a_space_that_says_nothing_of_them() -> None:
+    senses = Senses(None, jax.ShapeDtypeStruct((2,), jnp.float32), squash=False)
+    assert senses.declared(np.float32([[-1e30, 1e30], [0, -5]])).all()
+
+
 @given(st.integers(-800, 800), st.integers(0, 800))
 @example(0, 16)
 @example(40, 8)
