@@ -80,6 +80,17 @@ def test_a_state_is_filled_with_the_arrays_of_its_names() -> None:
     assert TREE["a"].tolist() == [0, 1, 2]
 
 
+def test_a_state_is_a_copy_of_what_was_stored() -> None:
+    """JAX uses NumPy's memory where it lies at a multiple of 64 bytes."""
+    raw = np.zeros(64 + 16, np.float32)
+    first = -raw.ctypes.data // 4 % 16
+    arrays = {"a": raw[first : first + 64]}
+    full = filled({"a": jnp.ones(64)}, arrays)
+    full["a"].block_until_ready()
+    arrays["a"][:] = 7
+    assert not full["a"].any()
+
+
 @pytest.mark.parametrize("wrong", [None, np.zeros((4, 1), np.float32), np.zeros((2, 2), np.int32)])
 def test_an_array_that_is_missing_or_different_is_trouble_that_names_it(wrong: Any) -> None:
     arrays = stored("x.") | {"x.b.0": wrong}

@@ -19,7 +19,7 @@ from jax.sharding import Mesh, NamedSharding, PartitionSpec
 
 from primordia.compiled import shared
 from primordia.engine.fused import FusedChunks, advance
-from primordia.engine.state import Limits, State, filled
+from primordia.engine.state import Limits, State, copied, filled
 from primordia.habitats.bodies import placeholder_bodies
 from primordia.habitats.contract import Bodies, JaxHabitat
 from primordia.law import events as log
@@ -69,8 +69,7 @@ class ShardedChunks(FusedChunks):
 
     def load(self, template: State, arrays: dict[str, np.ndarray]) -> State:
         """Return the state that `save` stored; `template` is any state of the same run."""
-        copied = partial(jax.device_put, device=self._split, may_alias=False)
-        return filled(template, arrays, place=copied)
+        return filled(template, arrays, place=partial(copied, device=self._split))
 
     def _joined(self) -> Events:
         """Return the events of all devices, with cells and worlds numbered as in the whole run."""

@@ -5,7 +5,7 @@ the length of chunks.
 """
 
 from collections.abc import Callable, Mapping
-from typing import NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import jax
 import jax.numpy as jnp
@@ -51,9 +51,12 @@ def named_leaves(tree: object) -> list[tuple[str, Array]]:
     return [(jax.tree_util.keystr(path, simple=True, separator="."), leaf) for path, leaf in leaves]
 
 
-def copied(array: np.ndarray) -> Array:
-    """Return a copy of an array on JAX's default device, for which nothing is compiled."""
-    return jax.device_put(array, may_alias=False)
+def copied(array: np.ndarray, device: Any = None) -> Array:
+    """Return a copy of an array on a device, or JAX's default device; nothing is compiled for it.
+
+    NumPy copies, since on the CPU `device_put` uses NumPy's memory even with `may_alias=False`.
+    """
+    return jax.device_put(np.array(array), device)
 
 
 def filled(

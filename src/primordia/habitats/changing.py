@@ -214,7 +214,7 @@ class ChangingOnHost(_Changing, AroundHost):
     def load(self, arrays: dict[str, np.ndarray]) -> None:
         """Restore what `save` returned."""
         own = jax.tree.leaves(self._course)
-        leaves = [jax.device_put(arrays[f"{COURSE}{i}"]) for i in range(len(own))]
+        leaves = [jax.device_put(np.array(arrays[f"{COURSE}{i}"])) for i in range(len(own))]
         self._course = jax.tree.unflatten(jax.tree.structure(self._course), leaves)
         self._scale()
         self.inner.load(

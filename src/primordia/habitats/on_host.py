@@ -72,7 +72,7 @@ class OnHost(HostHabitat):
 
     def load(self, arrays: dict[str, np.ndarray]) -> None:
         """Restore the bodies that `save` returned."""
-        leaves = [jax.device_put(arrays[f"body{i}"]) for i in range(len(arrays))]
+        leaves = [jax.device_put(np.array(arrays[f"body{i}"])) for i in range(len(arrays))]
         self._bodies = jax.tree.unflatten(jax.tree.structure(self._bodies), leaves)
 
     def lacks(self, ability: Ability) -> list[str]:

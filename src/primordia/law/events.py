@@ -92,7 +92,7 @@ def empty(law: Law, library: Any = np) -> Events:
         deaths=empty_list(cells, 1 << 15, DEATHS),
         samples=empty_list(law.worlds, 1 << 10, sample_columns(law.rates)),
     )
-    return jax.device_put(lists, may_alias=False)
+    return jax.device_put(lists)
 
 
 def emptied(events: Events) -> Events:

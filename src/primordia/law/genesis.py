@@ -21,7 +21,7 @@ from primordia.random.wide import Wide, wide
 def begin(law: Law, seeds: np.ndarray) -> World:
     """Return worlds of these seeds, uint64 (W,), without organisms. `settle` adds founders before
     the first tick."""
-    return jax.device_put(empty_worlds(law, wide(seeds)), may_alias=False)
+    return jax.device_put(empty_worlds(law, wide(seeds)))
 
 
 def empty_worlds(law: Law, seed: Wide, library: Any = np) -> World:
