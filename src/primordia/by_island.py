@@ -8,12 +8,9 @@ from primordia.brains.layout import Layout
 from primordia.errors import InputError
 from primordia.habitats.contract import AnyHabitat
 from primordia.settings.fields import first_fault
-from primordia.settings.islands import KEY, tables_of
+from primordia.settings.islands import KEY, MIGRATION, tables_of
 from primordia.settings.tables import NONE, merged, replaced
 from primordia.settings.values import check_values
-
-MIGRATION = "placement.migration"
-"""The name of a rate that only worlds with islands have."""
 
 
 def by_island(config: Any) -> list[Any]:

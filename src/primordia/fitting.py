@@ -12,7 +12,7 @@ from primordia.law.law import Law
 from primordia.mutations.checks import check_mutation
 from primordia.own_code import LIBRARIES
 from primordia.settings.fields import rates_of
-from primordia.settings.islands import tables_of
+from primordia.settings.islands import MIGRATION, tables_of
 from primordia.settings.tables import PARTS, did_you_mean, flat
 
 
@@ -41,6 +41,7 @@ def check(config: Any) -> None:
         )
     law = config.build_law(habitat)
     _check_islands(config, law)
+    _check_migration(config, law)
     try:
         law.heredity.mutation.check(law.heredity.layout)
     except ValueError as error:
@@ -51,13 +52,6 @@ def check(config: Any) -> None:
 
 def _check_islands(config: Any, law: Law) -> None:
     islands, mixed = law.islands, config.placement.topology == "well-mixed"
-    if config.placement.migration and not mixed:
-        raise InputError(
-            f"placement.migration: on a {config.placement.topology}, children cross the borders of"
-            " islands next door; set placement.topology to well-mixed, or leave migration out"
-        )
-    if config.placement.migration and islands.count == 1:
-        raise InputError("placement.migration: this world has no islands; add [[habitat.islands]]")
     if islands.count == 1:
         return
     for number, (own, island) in enumerate(
@@ -88,6 +82,26 @@ def _check_islands(config: Any, law: Law) -> None:
             check(own)
         except InputError as error:
             raise InputError(f"island {island.name}: {error}") from None
+
+
+def _check_migration(config: Any, law: Law) -> None:
+    """Check whether `migration` has a meaning, and children or founders reach every island."""
+    migration, mixed = config.placement.migration, config.placement.topology == "well-mixed"
+    if migration and not mixed:
+        raise InputError(
+            f"placement.migration: on a {config.placement.topology}, children cross the borders of"
+            " islands next door; set placement.topology to well-mixed, or leave migration out"
+        )
+    if migration and law.islands.count == 1:
+        raise InputError("placement.migration: this world has no islands; add [[habitat.islands]]")
+    rates = [value for name, value in law.beginning if name.endswith(MIGRATION)]
+    later = [season for season in config.seasons if season.setting.endswith(MIGRATION)]
+    isolated = mixed and law.islands.count > 1 and not any(rates) and not later
+    if isolated and config.genesis == "one":
+        raise InputError(
+            "genesis: without migration, one founder fills one island and the others stay empty; set"
+            " genesis to fill, or set placement.migration"
+        )
 
 
 def _check_own_code(config: Any, habitat: AnyHabitat) -> None:

@@ -250,6 +250,7 @@ MIXED = {"topology": "well-mixed"}
         ([{**A, "share": 100.0}, B], {}, "'b' gets no cell of 8"),
         ([{**A, "share": 7.0}, B], {"placement": MIXED}, "b gets one cell"),
         ([A, B], {"placement": {"migration": 0.1}}, "children cross the borders"),
+        ([A, B], {"placement": MIXED}, "the others stay empty; set genesis to fill"),
         ([{**A, "habitat": {"nme": 1}}, B], {}, "island a: there is no setting 'habitat.nme'"),
         ([{**A, "habitat": {"factors": {"gravty": 2.0}}}, B], {}, "did you mean 'gravity'"),
         ([{**A, "habitat": {"factors": {"gravity": 0.0}}}, B], {}, "is not above 0"),
@@ -261,6 +262,14 @@ def test_wrong_islands_are_refused_in_one_line(islands: Any, more: Any, message:
     with pytest.raises(InputError, match=message) as told:
         load("CartPole-survival", {"cells": 8, "habitat": {"islands": islands}, **more})
     assert "\n" not in str(told.value)
+
+
+def test_one_founder_may_begin_where_children_may_migrate() -> None:
+    later = {"kind": "schedule", "setting": "placement.migration", "at": 3, "value": 0.1}
+    leaving = {**A, "placement": {"migration": 0.1}}
+    for islands, seasons in ([leaving, B], []), ([A, B], [later]):
+        assert config(habitat={"islands": islands}, placement=MIXED, seasons=seasons).islands
+    assert config(habitat={"islands": [A, B]}, placement=MIXED, genesis="fill").islands.count == 2
 
 
 def test_migration_needs_islands_and_an_environment_has_none() -> None:

@@ -23,6 +23,8 @@ ARRAYS = "island."
 """Beginning of the names of an island's arrays of bodies in a state: `island.K` or `island.K.NAME`."""
 KEY = "islands"
 """The setting of a habitat's table that lists islands; `tables.habitats_of_islands` reads it too."""
+MIGRATION = "placement.migration"
+"""The name of a rate that only worlds with islands have."""
 
 
 class Island(Settings):
