@@ -150,12 +150,12 @@ def test_a_running_job_writes_the_counts_of_each_of_its_worlds(
     monkeypatch.setattr(Ledger, "write", noted)
     monkeypatch.setattr(jobs, "EVERY", 0.0)
     chosen = begin(write(tmp_path), tmp_path / "out")
-    jobs.live(chosen.plan, chosen.jobs[1], chosen.path)
+    jobs.live(chosen.plan, chosen.jobs[2], chosen.path)
     first, *_, last, done = written
     assert [each.state for each in (first, last, done)] == ["running", "running", "done"]
-    assert {(each.job, each.arm) for each in written} == {(1, "harsh")}
+    assert {(each.job, each.arm) for each in written} == {(2, "harsh")}
     assert first.worlds == []
-    worlds = primordia.load(chosen.path / chosen.jobs[1].folder).info()["worlds"]
+    worlds = primordia.load(chosen.path / chosen.jobs[2].folder).info()["worlds"]
     names = "seed", "ticks", "births", "deaths", "organism_ticks"
     expected = [
         WorldCounts(

@@ -9,7 +9,7 @@ import pytest
 
 from primordia.errors import InputError
 from primordia.experiments import plan as plans
-from primordia.experiments.campaign import begin
+from primordia.experiments.campaign import begin, planned
 from primordia.experiments.file import _of_runs, read
 from primordia.experiments.job import configuration
 from primordia.experiments.plan import Job
@@ -23,12 +23,12 @@ def jobs(file: Path) -> list[Job]:
     return read(file, file.parent / "out").jobs()
 
 
-def test_arms_are_cut_into_jobs_which_take_turns(tmp_path: Path) -> None:
+def test_arms_are_cut_into_jobs(tmp_path: Path) -> None:
     got = jobs(write(tmp_path))
     assert [(job.number, job.folder, job.first, job.worlds) for job in got] == [
         (0, "mild/0-1", 0, 2),
-        (1, "harsh/0-1", 0, 2),
-        (2, "mild/2", 2, 1),
+        (1, "mild/2", 2, 1),
+        (2, "harsh/0-1", 0, 2),
         (3, "harsh/2", 2, 1),
     ]
 
@@ -56,10 +56,12 @@ def test_numbers_in_folders_of_jobs_have_as_many_digits_as_the_last_world(
     assert [job.folder for job in got] == [f"mild/{name}" for name in names]
 
 
-def test_arms_may_have_different_numbers_of_worlds(tmp_path: Path) -> None:
-    """Jobs of the arms take turns until an arm has no more."""
+def test_arms_with_different_numbers_of_worlds_take_turns_until_one_has_no_more(
+    tmp_path: Path,
+) -> None:
     arms = [{"name": "few", "seeds": 1}, {"name": "many", "seeds": 5}, {"name": "some"}]
-    assert [(job.arm, job.first, job.worlds) for job in jobs(write(tmp_path, arms=arms))] == [
+    left = begin(write(tmp_path, arms=arms), tmp_path / "out").left()
+    assert [(job.arm, job.first, job.worlds) for job in left] == [
         ("few", 0, 1),
         ("many", 0, 2),
         ("some", 0, 2),
@@ -106,13 +108,35 @@ def test_words_of_a_question_may_change_and_settings_may_not(tmp_path: Path) -> 
     other: list[dict[str, Any]] = [{"name": "mild"}, {"name": "harsh", "hazard": 0.5}]
     for changes, words in [
         ({"arms": other}, "arms.harsh.hazard is 0.05 there, and 0.5 here"),
-        ({"arms": ARMS[::-1]}, "order is"),
-        ({"arms": [*ARMS, {"name": "third"}]}, "is missing there"),
         ({"jobs": {"worlds": 3}}, "worlds is 2 there, and 3 here"),
         ({"stop": {"ticks": 400}}, "stop.ticks is 300 there, and 400 here"),
     ]:
         with pytest.raises(InputError, match=f"holds another experiment: .*{words}"):
             begin(write(tmp_path, **changes), out)
+
+
+def test_further_arms_come_last_and_change_nothing_else(tmp_path: Path) -> None:
+    out, third = tmp_path / "out", {"name": "third", "hazard": 0.2}
+    before = begin(write(tmp_path), out)
+    planned(file := write(tmp_path, question="And this?", arms=[*ARMS, third]), out)
+    assert plans.recorded(out) == before.plan, "a look changes nothing"
+    after = begin(file, out)
+    kept = plans.recorded(out)
+    assert (kept.arms[:2], kept.question) == (before.plan.arms, before.plan.question)
+    assert kept.arms[2].config.hazard == 0.2
+    assert (after.jobs[:4], [job.arm for job in after.jobs[4:]]) == (before.jobs, ["third"] * 2)
+    complains(
+        here("experiment", write(tmp_path), "--out", out),
+        2,
+        "the arms mild, harsh, third; write them first",
+    )
+    for arms in (ARMS[::-1], [third, *ARMS, {"name": "x"}], [*ARMS, {"name": "x"}, third]):
+        words = "the arms mild, harsh, third; write them first in this order"
+        with pytest.raises(InputError, match=words):
+            begin(write(tmp_path, arms=arms), out)
+    changed = [{**ARMS[0], "hazard": 0.3}, ARMS[1], third, {"name": "x"}]
+    with pytest.raises(InputError, match=r"arms\.mild\.hazard is 0\.01 there, and 0.3 here"):
+        begin(write(tmp_path, arms=changed), out)
 
 
 @pytest.mark.parametrize(
@@ -222,7 +246,7 @@ def test_a_fork_has_the_jobs_and_settings_of_its_source(tmp_path: Path) -> None:
     plan = read(file, tmp_path / "runs" / "two")
     assert [arm.config.hazard for arm in plan.arms] == [0.05, 0.0]
     assert [arm.config.stop.ticks for arm in plan.arms] == [400, 400], "of the fork's file"
-    assert [(job.folder, job.source) for job in plan.jobs()][::2] == [
+    assert [(job.folder, job.source) for job in plan.jobs()][:2] == [
         ("same/0-1", "../one/harsh/0-1"),
         ("same/2", "../one/harsh/2"),
     ]
@@ -232,7 +256,7 @@ def test_a_fork_has_the_jobs_and_settings_of_its_source(tmp_path: Path) -> None:
     assert read(file, tmp_path / "runs" / "two") == plan
     changed = read(file, tmp_path / "elsewhere" / "two")
     assert changed.arms[0].config.hazard == 0.25
-    assert [job.source for job in changed.jobs()][::2] == [f"../one/harsh/{n}" for n in range(3)]
+    assert [job.source for job in changed.jobs()][:3] == [f"../one/harsh/{n}" for n in range(3)]
     for name, value in {"task": "mill.toml", "seeds": 3, "cells": 24}.items():
         arm = {"arms": [{"name": "same"}, {"name": "safe", name: value}]}
         for place in ({**other, name: value}, arm):

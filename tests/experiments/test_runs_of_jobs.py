@@ -62,7 +62,7 @@ def test_a_fork_is_made_once_and_goes_on(
     begun: bool, forked: Campaign, calls: MagicMock, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(CLEAR, lambda run: not begun)
-    run, config = live(forked, 1)
+    run, config = live(forked, 2)
     assert not calls.start.called
     limits = config.stop.model_dump()
     calls.resume.assert_called_once_with(run, limits, checkpoint_every=7.0, listen=ANY)

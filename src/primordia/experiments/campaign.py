@@ -53,13 +53,16 @@ class Campaign:
     def left(self, arms: Sequence[str] = ()) -> list[Job]:
         """Return the jobs of some arms that are not done; without `arms`, those of all arms.
 
+        Arms take turns: first the first job of each arm, then the second job of each arm, ...
+
         Raises:
             InputError: there is no such arm.
         """
         names = self._names(arms)
-        return [
+        left = [
             job for job in self.jobs if job.arm in names and self._ledger.entry(job).state != "done"
         ]
+        return sorted(left, key=lambda job: job.first)
 
     def status(self, arms: Sequence[str] = ()) -> CampaignStatus:
         """Return the number of jobs in each state, and the counts of each arm so far.

@@ -9,7 +9,6 @@ import os
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import chain, zip_longest
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, Self
 
@@ -128,11 +127,9 @@ class Plan(Settings):
         raise InputError(f"there is no arm {name!r}; the arms are {names}")
 
     def jobs(self) -> list[Job]:
-        """Return all jobs in the order in which they run: the first job of each arm, then the
-        second job of each arm, ..."""
-        by_arm = ([(arm.name, *cut) for cut in self._cut(arm)] for arm in self.arms)
-        in_turn = filter(None, chain.from_iterable(zip_longest(*by_arm)))
-        return [Job(number, *values) for number, values in enumerate(in_turn)]
+        """Return all jobs, arm by arm: jobs keep their numbers when there are further arms."""
+        cuts = ((arm.name, *cut) for arm in self.arms for cut in self._cut(arm))
+        return [Job(number, *values) for number, values in enumerate(cuts)]
 
     def _cut(self, arm: ArmPlan) -> Iterator[tuple[int, int, str, str | None]]:
         """Yield first world, number of worlds, folder and source of each of an arm's jobs."""
@@ -166,7 +163,7 @@ def recorded(out: Path) -> Plan:
 
 
 def check(plan: Plan, out: Path) -> None:
-    """Raise InputError if a directory holds something other than the experiment of this plan."""
+    """Raise InputError if a directory holds something other than this experiment or its first arms."""
     files.check_name(out)
     if (out / EXPERIMENT).is_file():
         _refuse_other(plan, recorded(out), out)
@@ -175,19 +172,29 @@ def check(plan: Plan, out: Path) -> None:
 
 
 def write(plan: Plan, out: Path) -> None:
-    """Write a plan into an experiment's directory, unless the directory has a plan.
+    """Write a plan that `check` accepts; if the directory has one, add the further arms alone.
 
     Raises:
         Trouble: the plan cannot be written."""
     files.make_folder(out)
-    if not (out / EXPERIMENT).is_file():
-        values = plan.model_dump(mode="json", exclude_none=True)
-        files.write_text(out / EXPERIMENT, tomli_w.dumps(values))
+    if (out / EXPERIMENT).is_file():
+        there = recorded(out)
+        if not (further := plan.arms[len(there.arms) :]):
+            return
+        plan = there.model_copy(update={"arms": (*there.arms, *further)})
+    values = plan.model_dump(mode="json", exclude_none=True)
+    files.write_text(out / EXPERIMENT, tomli_w.dumps(values))
 
 
 def _refuse_other(plan: Plan, there: Plan, out: Path) -> None:
-    """Raise InputError if two plans differ in more than the text of the question."""
-    ours, theirs = _named(plan), _named(there)
+    """Raise InputError if two plans differ in more than the text of the question and further arms."""
+    known, count = [arm.name for arm in there.arms], len(there.arms)
+    if [arm.name for arm in plan.arms[:count]] != known:
+        raise InputError(
+            f"{out} holds an experiment with the arms {', '.join(known)}; write them first in this"
+            " order, and further arms after them, or choose another --out"
+        )
+    ours, theirs = _named(plan.model_copy(update={"arms": plan.arms[:count]})), _named(there)
     for name in (*ours, *theirs):
         if ours.get(name) != theirs.get(name):
             raise InputError(
@@ -200,7 +207,7 @@ def _named(plan: Plan) -> dict[str, Any]:
     """Return the values in which two plans may differ, by dotted name."""
     values = plan.model_dump(mode="json", exclude={"question", "arms"})
     arms = {arm.name: {**arm.settings, "about": ""} for arm in plan.arms}
-    return flat({**values, "arms": arms, "order": [arm.name for arm in plan.arms]})
+    return flat({**values, "arms": arms})
 
 
 def _shown(value: Any) -> str:
