@@ -75,7 +75,7 @@ def test_a_discrete_action_is_its_number(poles: Path, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     model = session(tmp_path / "brain.onnx")
     about = model.get_modelmeta().custom_metadata_map
-    assert about == {"task": "CartPole-survival", "seed": "0", "organisms": str(organism.id)}
+    assert about == {"task": "CartPole-survival", "seed": "3", "organisms": str(organism.id)}
     policy, memory = organism.policy(), np.zeros(32, np.float32)
     for senses in np.random.default_rng(1).normal(size=(TICKS, 4)).astype(np.float32):
         action, _ = model.run(None, {"senses": senses, "memory": memory})
