@@ -231,8 +231,8 @@ def searched(name: str, method: str, way: str, outcome: str = "score") -> str:
 
 def chosen(habitat: str) -> dict[str, config.Config]:
     """Return the settings of the tasks that come with the package in a habitat, by task."""
-    every = {task: config.load(task) for task in tasks()}
-    return {task: each for task, each in every.items() if each.habitat["name"] == habitat}
+    own = (task for task, values in tasks().items() if values["habitat"]["name"] == habitat)
+    return {task: config.load(task) for task in own}
 
 
 def pages() -> dict[Path, str]:
