@@ -19,8 +19,6 @@ from primordia.law.events import Events
 from primordia.law.law import Law
 from primordia.random.wide import wide
 
-_running = jax.jit(running)
-
 CHUNK_SECONDS = 0.2
 """Target time of a chunk, short enough for Ctrl-C to take effect soon."""
 
@@ -66,7 +64,8 @@ class Engine:
 
     def any_running(self, limits: Limits) -> bool:
         """Return whether some world has not reached a limit."""
-        return bool(np.asarray(_running(self.state.world.worlds, limits)).any())
+        of_host = jax.tree.map(np.asarray, (self.state.world.worlds, limits))
+        return bool(running(*of_host).any())
 
     def limits(self, stop: dict[str, Any], ticks: np.ndarray | None = None) -> Limits:
         """Return the limits of all worlds, from settings of `stop`.

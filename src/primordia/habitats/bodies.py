@@ -1,5 +1,7 @@
 """Bodies in JAX: inserted into cells, selected, and checked for finite coordinates."""
 
+from functools import partial
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -27,12 +29,15 @@ def placeholder_bodies(habitat: JaxHabitat, cells: int) -> Bodies:
         worlds = cells // sum(sizes)
         return Parts(tuple(placeholder_bodies(own, worlds * size) for own, size in each), sizes)
     made = fresh_bodies(habitat, np.zeros((MADE, habitat.words), np.uint32))
-    return shared(_first, cells)(made)
+    return jax.tree.map(partial(_copies_of_first, cells), made)
 
 
-def _first(cells: int, bodies: Bodies) -> Bodies:
-    """Return copies of the first body."""
-    return jax.tree.map(lambda leaf: jnp.repeat(leaf[:1], cells, axis=0), bodies)
+def _copies_of_first(cells: int, leaf: Array) -> Array:
+    """Return copies of the first body's array: by NumPy outside of compiled code, where JAX would
+    compile them for each shape."""
+    if isinstance(leaf, jax.core.Tracer):
+        return jnp.repeat(leaf[:1], cells, axis=0)
+    return jax.device_put(np.repeat(np.asarray(leaf)[:1], cells, axis=0))
 
 
 def insert_bodies(bodies: Bodies, cells: Array, new: Bodies) -> Bodies:
