@@ -7,7 +7,6 @@ general organism was also lucky in the games in which it was chosen, so its line
 from dataclasses import asdict, dataclass
 from typing import Any
 
-import jax.numpy as jnp
 import numpy as np
 
 from primordia.assays.subjects import GAMES, TICKS
@@ -156,7 +155,7 @@ def _line(
     chosen = run.lives.take(line[places])
     players = players_of(run, [(int(number), world) for number in chosen.id])
     fresh = stream(wide(run.world_seeds[[world]]), Purpose.REBIRTH, wide(run.lives.id[[row]]))
-    keys = fresh.map(lambda word: jnp.repeat(word, len(places), total_repeat_length=len(places)))
+    keys = fresh.map(lambda word: np.repeat(word, len(places)))
     lived = everywhere(run, players._replace(keys=keys), world, games, ticks)
     return tuple(
         Ancestor(

@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
@@ -85,7 +84,7 @@ def _of_one(
     breed = shared(_children, subjects.law, operator.mutation)
     for brood in range(MOST_CHILDREN):
         key = streams(subjects.players.keys.take(same), wide([brood]), *PURPOSES)
-        draws = Draws(key, jnp.arange(count, dtype=jnp.int32))
+        draws = Draws(key, np.arange(count, dtype=np.int32))
         parents = jax.device_put(subjects.players.genomes[same])
         children, mutated = breed(
             Family(parents, jax.device_put(operator.notes[same]), rates, draws), moments
@@ -131,4 +130,4 @@ def moments_of(players: Players, rule: Moments, ticks: int) -> Remembered:
             tick += len(stretch.playing)
             if not stretch.alive.any():
                 break
-    return Remembered(*map(jnp.asarray, (senses, memory, known)))
+    return Remembered(*jax.device_put((senses, memory, known)))

@@ -5,11 +5,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 
 from primordia import config, device
 from primordia.brains import genomes
+from primordia.compiled import shared
 from primordia.config import Config
 from primordia.errors import InputError
 from primordia.history.climate import PastClimate
@@ -186,8 +186,9 @@ def founders(chosen: Config, count: int) -> np.ndarray:
     """Return genomes of founders, drawn by the task's mutation class, float32 (count, P)."""
     heredity = chosen.build_heredity(chosen.build_layout(chosen.build_habitat()))
     seed = stream(wide(np.full(count, chosen.seed)), Purpose.CONTROL, wide([0]))
-    draws = Draws(streams(seed, wide([0]), *PURPOSES), jnp.arange(count, dtype=jnp.int32))
-    return np.asarray(heredity.mutation.founders(heredity.layout, draws))
+    draws = Draws(streams(seed, wide([0]), *PURPOSES), np.arange(count, dtype=np.int32))
+    mutation, layout = heredity.mutation, heredity.layout
+    return np.asarray(shared(type(mutation).founders, mutation, layout)(draws))
 
 
 def _fresh(
@@ -203,7 +204,7 @@ def _fresh(
     island = law.islands.of_cells(number % law.cells)
     climate = law.islands.here(everywhere, island, np.where)
     keys = stream(wide(np.full(count, chosen.seed)), Purpose.EVALUATION, wide(key))
-    rates = Rates.of(jax.tree.map(jnp.asarray, climate))
+    rates = Rates.of(jax.device_put(climate))
     players = Players(law, habitat, own, keys, rates, island)
     notes = np.asarray(law.heredity.mutation.founders_notes(count))
     return Subjects(source, chosen, players, number, np.zeros_like(number), notes, climate)

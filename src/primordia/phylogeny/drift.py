@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array, lax
@@ -18,7 +19,7 @@ from primordia.compiled import shared
 from primordia.phylogeny.diversity import hill_numbers
 from primordia.phylogeny.living import Turnover
 from primordia.progress import tell
-from primordia.random.keys import Purpose, below, encrypt, streams
+from primordia.random.keys import Purpose, below, encrypt, streams, threefry
 from primordia.random.wide import Wide, wide
 from primordia.runs.lives import Lives
 
@@ -58,10 +59,10 @@ class Deal(NamedTuple):
         kinds = np.where(turnover.birth, born[turnover.row], np.int8(DEATH))[events]
         before = turnover.living[events] - np.where(kinds == DEATH, -1, 1)
         tick = streams(wide(seed), wide(int(ticks[0])), Purpose.DRIFT)[Purpose.DRIFT]
-        key = encrypt(tick, wide(what))
+        key = threefry(tick, wide(what))
         return cls(
-            kinds=jnp.asarray(np.append(kinds, np.int8(DEATH))),
-            before=jnp.asarray(np.append(before, 1).astype(np.int32)),
+            kinds=jax.device_put(np.append(kinds, np.int8(DEATH))),
+            before=jax.device_put(np.append(before, 1).astype(np.int32)),
             key=key,
             places=places - places[0],
             living=turnover.living[places - 1],
@@ -115,7 +116,7 @@ def _dealt(deal: Deal, shadows: int, lines: int) -> Iterator[np.ndarray]:
     """Yield the living of each line in each shadow at each instant, int64 (R, K)."""
     slots = int(deal.before.max(initial=lines)) + 1
     own = np.where(np.arange(slots) < lines, np.arange(slots) + 1, NO_LINE).astype(np.int32)
-    labels = jnp.tile(jnp.asarray(own), (shadows, 1))
+    labels = jax.device_put(np.tile(own, (shadows, 1)))
     call = shared(_deal, donate=(0,))
     last_founder = np.flatnonzero(np.asarray(deal.kinds) == FOUNDER).max(initial=-1)
     first_code, settled = (np.arange(shadows) * (lines + 1))[:, None], False

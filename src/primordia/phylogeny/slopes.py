@@ -5,7 +5,7 @@ unit of time (Haldane 1924; Crow & Kimura 1970). So s is the slope of the logit 
 measured in competitions (Lenski et al. 1991).
 """
 
-import jax.numpy as jnp
+import jax
 import numpy as np
 
 from primordia.compiled import shared
@@ -116,6 +116,6 @@ def _drift_on(now: np.ndarray, deal: Deal, first: int, last: int) -> None:
     size = 1 << max(int(len(rows) - 1).bit_length(), 8)  # few sizes, since JAX compiles for each
     padded = np.zeros((2, size), np.int32)
     padded[:, : len(rows)] = rows, now[rows]
-    which, count = map(jnp.asarray, padded)
+    which, count = jax.device_put(list(padded))
     drifted = shared(deal_one_line)(count, which, first, last, *deal[:3])
     now[rows] = np.asarray(drifted)[: len(rows)]
