@@ -155,7 +155,7 @@ def _line(
     chosen = run.lives.take(line[places])
     players = players_of(run, [(int(number), world) for number in chosen.id])
     fresh = stream(wide(run.world_seeds[[world]]), Purpose.REBIRTH, wide(run.lives.id[[row]]))
-    keys = fresh.map(lambda word: np.repeat(word, len(places)))
+    keys = fresh.take(np.zeros(len(places), np.intp))
     lived = everywhere(run, players._replace(keys=keys), world, games, ticks)
     return tuple(
         Ancestor(

@@ -84,7 +84,7 @@ def _of_one(
     breed = shared(_children, subjects.law, operator.mutation)
     for brood in range(MOST_CHILDREN):
         key = streams(subjects.players.keys.take(same), wide([brood]), *PURPOSES)
-        draws = Draws(key, np.arange(count, dtype=np.int32))
+        draws = Draws(key, jax.device_put(np.arange(count, dtype=np.int32)))
         parents = jax.device_put(subjects.players.genomes[same])
         children, mutated = breed(
             Family(parents, jax.device_put(operator.notes[same]), rates, draws), moments

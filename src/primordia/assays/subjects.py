@@ -186,7 +186,9 @@ def founders(chosen: Config, count: int) -> np.ndarray:
     """Return genomes of founders, drawn by the task's mutation class, float32 (count, P)."""
     heredity = chosen.build_heredity(chosen.build_layout(chosen.build_habitat()))
     seed = stream(wide(np.full(count, chosen.seed)), Purpose.CONTROL, wide([0]))
-    draws = Draws(streams(seed, wide([0]), *PURPOSES), np.arange(count, dtype=np.int32))
+    draws = Draws(
+        streams(seed, wide([0]), *PURPOSES), jax.device_put(np.arange(count, dtype=np.int32))
+    )
     mutation, layout = heredity.mutation, heredity.layout
     return np.asarray(shared(type(mutation).founders, mutation, layout)(draws))
 
