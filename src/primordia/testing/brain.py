@@ -1,5 +1,7 @@
 """The check of brains."""
 
+from collections.abc import Callable
+
 import jax.numpy as jnp
 import numpy as np
 from jax import Array, lax
@@ -30,7 +32,7 @@ def check_brain(brain: Brain, senses: int = 33, outputs: int = 5) -> None:
     _keeps_its_arguments(brain, genome, memory, seen[0])
     think = jit(lambda *given: brain(*given))
     whole = think(genome, memory, seen[0])
-    _depends_on_its_own_only(brain, whole, genome, memory, seen[0])
+    _depends_on_its_own_only(brain, think, genome, memory, seen[0])
     for count in COUNTS:
         few = think(*last((genome, memory, seen[0]), count))
         says = (
@@ -77,9 +79,10 @@ def _keeps_its_arguments(brain: Brain, genome: Genome, memory: Array, seen: Arra
 
 
 def _depends_on_its_own_only(
-    brain: Brain, whole: tuple, genome: Genome, memory: Array, seen: Array
+    brain: Brain, think: Callable, genome: Genome, memory: Array, seen: Array
 ) -> None:
     """Compare thoughts with those of a second trace, and of a batch with one broken genome."""
+    whole = think(genome, memory, seen)
     again = jit(lambda *given: brain(*given))(genome, memory, seen)
     says = (
         "when it is traced again, so it depends on more than genome, memory and senses; keep no"
@@ -89,7 +92,7 @@ def _depends_on_its_own_only(
     broken = {name: np.array(block) for name, block in genome.items()}
     for block in broken.values():
         block[0] = np.nan
-    beside = jit(lambda *given: brain(*given))(broken, memory, seen)
+    beside = think(broken, memory, seen)
     says = "when organism 0 has another genome; sum nothing over the first axis, that of organisms"
     same(brain, last(whole, ALL - 1), last(beside, ALL - 1), says, 1)
 
