@@ -132,17 +132,8 @@ class Mirror(OnHost):
         super().load({"body0": arrays["mirror"]})
 
 
-class Blank(Mirror):
-    """A habitat whose senses are 9 for the bodies that it does not step."""
-
-    def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
-        senses, outcome = super().step(action, alive)
-        senses[~alive] = 9.0
-        return senses, outcome
-
-
 class Clocked(Mirror):
-    """A habitat that tallies the ticks lived, up and down."""
+    """A habitat that tallies the ticks lived, up and down; its senses of unstepped bodies are 9."""
 
     tallies = "ticks", "ticks_down"
 
@@ -156,7 +147,9 @@ class Clocked(Mirror):
 
     def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
         self.clock += alive
-        return super().step(action, alive)
+        senses, outcome = super().step(action, alive)
+        senses[~alive] = 9.0
+        return senses, outcome
 
     def tally(self) -> np.ndarray:
         return np.stack([self.clock, -self.clock], axis=1)

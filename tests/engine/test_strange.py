@@ -156,7 +156,7 @@ def test_a_run_that_was_stopped_goes_on_as_if_it_had_not_been(
     assert_rebuilt(run)
 
 
-@pytest.mark.parametrize("habitat", ["Mill", "Blank"])
+@pytest.mark.parametrize("habitat", ["Mill", "Clocked"])
 def test_worlds_that_stop_early_do_not_change_the_others(
     settings: dict[str, Any], habitat: str
 ) -> None:
