@@ -62,19 +62,9 @@ def test_a_row_of_an_ancestor_has_its_life_its_mutation_and_its_spread(shown: Sh
     assert shown["title"] == "RUN: the line of organism 1,234 of world 2"
     assert shown["head"][:7] == ["organism", "line", "born", "lived", "death", "children", "change"]
     assert shown["head"][7:] == ["10 %", "50 %", "all"]
+    first = "1,000 2,000 3,000 4,000 starved 5,000 founder 6,000 7,000 8,000"
     assert shown["rows"] == [
-        [
-            "1,000",
-            "2,000",
-            "3,000",
-            "4,000",
-            "starved",
-            "5,000",
-            "founder",
-            "6,000",
-            "7,000",
-            "8,000",
-        ],
+        first.split(),
         ["1,001", "2,001", "3,001", "4,001", "alive", "5,001", "0.25", "-", "-", "-"],
         ["1,002", "2,002", "3,002", "4,002", "starved", "5,002", "123", "6,002", "7,002", "0"],
         ["1,003", "2,003", "3,003", "4,003", "starved", "5,003", "copy", "6,003", "7,003", "8,003"],
@@ -83,7 +73,7 @@ def test_a_row_of_an_ancestor_has_its_life_its_mutation_and_its_spread(shown: Sh
     assert not any("left out" in note or "unknown" in note for note in shown["notes"])
 
 
-@pytest.mark.parametrize("count", [20, 21, 1300])
+@pytest.mark.parametrize("count", [20, 1300])
 def test_ancestors_that_are_left_out_are_counted(count: int, shown: Shown) -> None:
     steps = [step(place, "copy") for place in range(count)]
     descent._show_ancestors(RUN, ancestors(steps, size=np.zeros(count)))
@@ -186,7 +176,7 @@ def test_notes_are_about_the_last_tick(shown: Shown) -> None:
         assert "of the pairs" not in " ".join(shown["notes"])
 
 
-@pytest.mark.parametrize("count", [9, 10, 11, 2010])
+@pytest.mark.parametrize("count", [10, 2010])
 def test_the_ten_largest_lines_are_shown_and_the_others_counted(count: int, shown: Shown) -> None:
     descent._show_lines(RUN, world(count))
     assert [row[0] for row in shown["rows"]] == [f"{1000 + n:,}" for n in range(min(count, 10))]
@@ -205,12 +195,10 @@ def test_only_a_sweep_past_half_of_the_living_is_under_way() -> None:
         " of the living since tick 4,321."
     )
     assert descent._sweeps_text([done, early]) == f"{whole}."
-    assert descent._sweeps_text([done]) == f"{whole}."
     assert descent._sweeps_text([]) == "Sweeps to all of the living: 0."
     at_once = Sweep(9, "copy", 300, 300, 300, 1)
     text = descent._sweeps_text([at_once, done, begun])
     assert text.startswith("Sweeps to all of the living: 2; median duration: 650 ticks. Under way")
-    assert descent._sweeps_text([begun]).startswith("Sweeps to all of the living: 0. Under way: ")
 
 
 @pytest.mark.parametrize("as_json", [(), ("--json",)])

@@ -93,8 +93,7 @@ def test_each_group_has_a_row_with_the_medians_of_its_worlds() -> None:
     assert rows == [["champion", "1", "2", "1", "100"]]
 
 
-@pytest.mark.parametrize("worlds", [1, 2])
-@pytest.mark.parametrize("same", [(True, True), (True, False)])
+@pytest.mark.parametrize(("worlds", "same"), [(1, (True, True)), (2, (True, False))])
 def test_notes_are_only_those_that_apply(worlds: int, same: tuple[bool, bool]) -> None:
     """The note about equal games needs equal games of every champion."""
     each = [played(world % worlds, [9], same=one) for world, one in enumerate(same)]
@@ -110,11 +109,9 @@ def test_notes_are_only_those_that_apply(worlds: int, same: tuple[bool, bool]) -
     ("words", "says"),
     [
         ((), "RUN: games cut at 100,000 ticks"),
-        (("--ticks", 1234, "--sticky", 0.5), "RUN: games cut at 1,234 ticks, sticky 0.5"),
-        (("--island", "i"), "RUN, born on i: games cut at 100,000 ticks"),
         (
-            ("--island", "i", "--on", "j"),
-            "RUN, born on i, playing on j: games cut at 100,000 ticks",
+            ("--ticks", 1234, "--sticky", 0.5, "--island", "i", "--on", "j"),
+            "RUN, born on i, playing on j: games cut at 1,234 ticks, sticky 0.5",
         ),
         (("--freeze-senses",), "RUN: games cut at 100,000 ticks, senses frozen"),
         (

@@ -161,8 +161,8 @@ def test_a_wrong_request_is_one_clear_line(tmp_path: Path) -> None:
 
     assert "0 of 4 jobs done" in asked("--status").stdout
     assert not out.exists()
-    for alone in (["--jobs", "2"], ["--only", "mild"], ["--ray"]):
-        complains(asked("--job", "1", *alone), 2, f"leave out {alone[0]}")
+    several = "--jobs", 2, "--only", "mild", "--ray"
+    complains(asked("--job", 1, *several), 2, "leave out --jobs and --only and --ray")
     complains(asked("--job", "4"), 2, f"{out} has no job 4; the jobs are 0 to 3")
     complains(asked("--only", "mlid"), 2, "there is no arm 'mlid'; the arms are mild, harsh")
     complains(asked("--json"), 2, "--json needs --status")
