@@ -45,19 +45,6 @@ def test_the_text_about_an_organism_has_its_spreads_and_counts() -> None:
     ]
 
 
-def test_the_extremes_are_shown_even_if_the_quartiles_are_equal() -> None:
-    lived = games([20, 100, 100, 100, 100])
-    found = Evaluation(7, 2, "live", lived, None, deterministic=False)
-    spread = "median 100 (quartiles 100, 100), minimum 20, maximum 100"
-    assert evaluation_text(found, {}).splitlines()[-1] == f"  lifespan  {spread}"
-
-
-def test_random_games_may_happen_to_be_equal() -> None:
-    equal = games([9, 9])._replace(course=np.zeros(2, np.uint64))
-    found = Evaluation(7, 0, "live", equal, None, deterministic=False)
-    assert evaluation_text(found, {}).splitlines()[1] == "  1 distinct game"
-
-
 def standing(name: str, chosen_from: int, *lived: tuple[int, int], score: int = 0) -> Standing:
     """Return a group with organisms of (world, ticks); whole games have a length of twice the ticks."""
     each = [

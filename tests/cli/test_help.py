@@ -48,6 +48,7 @@ def test_the_settings_are_those_of_the_chosen_parts() -> None:
     assert "--brain.hidden" not in brains["linear"]
     assert brains["wrong"] == {"--brain.kind"} < brains["default"]
     assert "--brain.kind" in dict(setting_rows(None, {"brain": 3}))
+    assert [name for name, _ in setting_rows(None, {}) if "habitat" in name] == ["--habitat.name"]
 
 
 def test_settings_that_a_user_cannot_choose_are_left_out() -> None:
