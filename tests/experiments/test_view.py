@@ -78,7 +78,7 @@ def test_each_arm_and_each_running_job_is_a_row() -> None:
     ]
 
 
-@pytest.mark.parametrize("count", [SHOWN - 1, SHOWN, SHOWN + 1, SHOWN + 5])
+@pytest.mark.parametrize("count", [SHOWN, SHOWN + 1])
 def test_the_first_jobs_are_listed_and_the_others_are_counted(count: int) -> None:
     jobs, failures = (
         tuple(map(make, range(100, 100 + count)))
@@ -93,9 +93,8 @@ def test_the_first_jobs_are_listed_and_the_others_are_counted(count: int) -> Non
     assert more == ([f"and {count - SHOWN} more"] if count > SHOWN else [])
 
 
-@pytest.mark.parametrize("before", [0, 3])
 def test_time_left_depends_on_the_pace_of_jobs_since_the_command_began(
-    before: int, monkeypatch: pytest.MonkeyPatch
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Two jobs are done after 100 s, so six take 300 s more. Jobs done before do not count."""
     now = at(monkeypatch, 50.0)
@@ -103,8 +102,7 @@ def test_time_left_depends_on_the_pace_of_jobs_since_the_command_began(
     open_jobs = {"running": 2, "failed": 1, "waiting": 4}
     under_way = running(0, 1000.0, None), running(1, None, None)
     first, later = (
-        CampaignStatus("?", {"done": done, **open_jobs}, (), under_way, ())
-        for done in (before, before + 2)
+        CampaignStatus("?", {"done": done, **open_jobs}, (), under_way, ()) for done in (3, 5)
     )
     for seconds, status, left in ((0, first, None), (60, first, None), (40, later, 300)):
         now.seconds += seconds
