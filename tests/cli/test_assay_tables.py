@@ -202,9 +202,9 @@ def test_each_of_several_arms_has_a_table_and_a_folder_of_figures(
     with (
         patch("primordia.figures.assays.effects", side_effect=tuple) as draw,
         patch("primordia.figures.style.save", return_value=["x.png", "x.svg"]) as save,
+        patch.object(tables, "effects", lambda arm, _: tables.Told(f"table of {arm}", "h", ["1"])),
     ):
-        told = lambda arm, _: tables.Told(f"table of {arm}", "h", ["1"])  # noqa: E731
-        options.tell("effects", found, as_json, tmp_path, told)
+        options.tell("effects", found, as_json, tmp_path)
     folders = [tmp_path / name if len(arms) > 1 else tmp_path for name in arms]
     assert draw.call_args_list == [call(of) for of in found.values()]
     assert [each.args[1] for each in save.call_args_list] == [each / "effects" for each in folders]
@@ -284,10 +284,3 @@ def test_generalists_are_told_with_the_births_at_which_their_line_gained_islands
     }
     never = [replace(found[1], line=line[:2])]
     assert [row[0] for row in tables.generalists("run", never)[2].rows] == ["none"]
-
-
-def test_each_table_of_an_assay_with_several_is_shown(capsys: pytest.CaptureFixture[str]) -> None:
-    told = tables.Told("first", ("", "a"), [("x", "1")]), tables.Told("second", ("",), [("y",)])
-    options.tell("some", {"run": []}, False, None, lambda name, found: [*told])
-    shown = capsys.readouterr().out
-    assert shown.index("first") < shown.index("x") < shown.index("second") < shown.index("y")

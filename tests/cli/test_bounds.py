@@ -1,4 +1,4 @@
-"""Numbers as values of options."""
+"""Bounds of the numbers that options take."""
 
 import math
 import re
