@@ -153,27 +153,19 @@ def test_a_line_is_a_column_with_its_first_last_and_largest_step() -> None:
         "as good from": ["13 (generation 6, tick 5,003)", "1 (generation 0, tick 0)"],
         "largest step": ["13: 300 to 1,900", "-"],
     }
-
-
-def test_a_line_tells_its_migrations_if_there_are_islands() -> None:
-    steps = [Step(0, 10, 0, "founder", 3, 90, "sea"), Step(9, 11, 5, "mutant", 3, 80, "lagoon")]
-    found = Line(11, 3, 9, 2, steps, migrations=1234)
-    table = cells(tables.line("run", [found]))
-    assert (table["island of birth"], table["migrations"]) == (["lagoon"], ["1,234"])
-    assert [step["island"] for step in found.to_dict()["steps"]] == ["sea", "lagoon"]
-    plain = Line(2, 0, 1, 2, [Step(0, 1, 0, "founder", 3, 90)]).to_dict()
+    plain = found[1].to_dict()
+    names = "generation", "organism", "born", "birth_cause", "recorded", "reborn"
+    assert plain["steps"][0] == dict(zip(names, (0, 1, 0, "founder", 3, 90), strict=True))
     assert "migrations" not in plain
-    assert plain["steps"] == [
-        {"generation": 0, "organism": 1, "born": 0, "birth_cause": "founder", "recorded": 3, "reborn": 90}
-    ]  # fmt: skip
 
 
-def test_a_line_tells_when_brain_and_body_became_good_if_bodies_are_inherited() -> None:
+def test_a_line_tells_of_islands_and_of_bodies_that_are_inherited() -> None:
     steps = [
-        Step(3 * n, 10 + n, 50 + n, "mutant", 3, 90, brain=brain, body=90)
-        for n, brain in enumerate((40, 90))
+        Step(3 * n, 10 + n, 50 + n, "mutant", 3, 90, island, brain, 90)
+        for n, (island, brain) in enumerate((("sea", 40), ("lagoon", 90)))
     ]
-    table = cells(tables.line("run", [Line(11, 3, 9, 2, steps)]))
+    table = cells(tables.line("run", [Line(11, 3, 9, 2, steps, migrations=1234)]))
+    assert (table["island of birth"], table["migrations"]) == (["lagoon"], ["1,234"])
     assert table["brain as good from"] == ["11 (generation 3, tick 51)"]
     assert table["body as good from"] == ["10 (generation 0, tick 50)"]
 

@@ -119,19 +119,6 @@ def test_an_environment_in_jax_is_lived_in_by_its_name_alone(tmp_path: Path) -> 
     assert (tmp_path / "life.gif").stat().st_size > 1000
 
 
-@pytest.mark.slow
-def test_what_is_wrong_with_an_environment_in_jax_is_found(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(testing, "check_habitat", lambda _: None)
-    fine = here("check", "gymnax:tests.walks:Choice")
-    assert fine.returncode == 0
-    assert "With random actions, a life has 9 ticks on average." in fine.stdout
-    wrong = here("check", "gymnax:tests.walks:Overwriting")
-    assert wrong.returncode == 1
-    assert "Found: step changes the state that it is given." in wrong.stdout
-
-
 @pytest.mark.parametrize("faults", [[], ["it forgets"]])
 def test_check_names_faults_of_the_environment_and_breaches_of_the_contract(
     faults: list[str], monkeypatch: pytest.MonkeyPatch

@@ -81,7 +81,6 @@ def test_the_settings_of_a_run_are_its_own(tmp_path: Path) -> None:
         (("run", TASK), TASK, f"values of {TASK})"),
         (("run", "a.toml"), "a.toml", "values of a.toml)"),
         (("run", "gym:X-v0"), "gym:X-v0", "values of gym:X-v0)"),
-        (("run", "gymnax:a:B"), "gymnax:a:B", "values of gymnax:a:B)"),
         (("fork", "RUN", "--at", 3), Path("RUN"), "values of RUN)"),
         (("fork", "other", "--at", 3), None, "fork RUN --help` also"),
     ],
