@@ -4,6 +4,7 @@ import csv
 import tomllib
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -23,6 +24,24 @@ FILES = sorted(EXPERIMENTS.glob("*/*.toml"))
 TRACED = {"acrobot", "poles"}
 """Experiments whose settings are checked by compiled code of seconds; `make slow` reads them."""
 TRIALS = sorted(EXPERIMENTS.glob("*/founders/*.toml"))
+
+
+@pytest.fixture(autouse=True)
+def _scripts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let tests import the scripts."""
+    monkeypatch.syspath_prepend(str(EXPERIMENTS))
+
+
+def written(file: Path, **values: Any) -> Path:
+    """Write an experiment's file into a new folder."""
+    file.parent.mkdir()
+    file.write_text(tomli_w.dumps({"question": "Do they?", **values}))
+    return file
+
+
+def rows_of(file: Path) -> list[dict[str, str]]:
+    """Return the rows of a CSV file, each by the names of its columns."""
+    return list(csv.DictReader(file.read_text().splitlines()))
 
 
 @pytest.fixture
@@ -64,7 +83,6 @@ def test_trials_measure_what_mutants_inherit(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Where all lives start alike, copies live as long as their parents; strangers do not."""
-    monkeypatch.syspath_prepend(str(EXPERIMENTS))
     script = import_module("founders")
     for name, value in {"FOUNDERS": 64, "PARENTS": 4, "MUTANTS": 8}.items():
         monkeypatch.setattr(script, name, value)
@@ -73,12 +91,10 @@ def test_trials_measure_what_mutants_inherit(
         {"name": "strangers", "mutation": {"founder_scale": 1.0, "scale": 1000.0}},
     ]
     shared = {"task": "CartPole-survival", "habitat": {"spread": 0.0}}
-    file = tmp_path / "founders" / "poles.toml"
-    file.parent.mkdir()
-    file.write_text(tomli_w.dumps({"question": "What is inherited?", **shared, "arms": arms}))
+    file = written(tmp_path / "founders" / "poles.toml", **shared, arms=arms)
     script.report(file)
     text = (tmp_path / "results" / "poles-founders.md").read_text()
-    assert text.startswith("# What is inherited?")
+    assert text.startswith("# Do they?")
     rows = [line.strip("| ").split(" | ") for line in text.splitlines() if line.startswith("| ")]
     shares = {row[0]: float(row[-1]) for row in rows[2:]}
     assert shares["copies"] == 1
@@ -93,10 +109,8 @@ def pong_experiment(tmp_path_factory: pytest.TempPathFactory) -> Path:
     root = tmp_path_factory.mktemp("ponged")
     shared = {"task": "Pong-survival", "cells": 4, "genesis": "fill", "habitat": {"workers": 0}}
     arms = [{"name": "heredity"}, {"name": "none", "inheritance": "founder"}]
-    file = root / "games" / "pong.toml"
-    file.parent.mkdir()
-    values = {"question": "Do they?", **shared, "stop": {"ticks": 300, "until": "none"}}
-    file.write_text(tomli_w.dumps({**values, "arms": arms}))
+    stop = {"ticks": 300, "until": "none"}
+    file = written(root / "games" / "pong.toml", **shared, stop=stop, arms=arms)
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(root)
         primordia.experiment(file)
@@ -106,7 +120,6 @@ def pong_experiment(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def ponged(pong_experiment: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Return the file of an experiment with Pong that has been run from the current folder."""
-    monkeypatch.syspath_prepend(str(EXPERIMENTS))
     monkeypatch.chdir(pong_experiment.parent.parent)
     return pong_experiment
 
@@ -120,12 +133,9 @@ def champion(file: Path) -> int:
     named = primordia.load(import_module("named").arms(file)[0]).organism(
         int(metadata["organisms"])
     )
-    begun = Path(f"from-{named.id}")
-    if not begun.exists():
-        alone = {"cells": 2, "habitat": {"workers": 0}, "stop": {"ticks": 1}}
-        primordia.run(metadata["task"], begun, ancestors=[str(kept)], **alone)
-    founder = primordia.load(begun).organism(0)
-    np.testing.assert_array_equal(founder.genome(), named.genome())
+    alone = {"cells": 2, "habitat": {"workers": 0}, "stop": {"ticks": 1}}
+    begun = primordia.run(metadata["task"], Path("begun"), ancestors=[str(kept)], **alone)
+    np.testing.assert_array_equal(begun.organism(0).genome(), named.genome())
     return named.id
 
 
@@ -141,7 +151,7 @@ def test_games_and_champions_are_reported(ponged: Path, monkeypatch: pytest.Monk
     reference = primordia.load(runs(ponged)[0])
     assert champion(ponged) == reference.oldest().id
     games.report(ponged)
-    rows = list(csv.DictReader((results / "pong-games.csv").read_text().splitlines()))
+    rows = rows_of(results / "pong-games.csv")
     assert list(dict.fromkeys(row["who"] for row in rows)) == [
         "heredity: champion", "heredity: all alive", "best founder", "founder",
         "none: champion", "none: all alive",
@@ -161,14 +171,13 @@ def test_games_and_champions_are_reported(ponged: Path, monkeypatch: pytest.Monk
 
 @pytest.mark.slow
 def test_effects_of_mutations_are_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.syspath_prepend(str(EXPERIMENTS))
     script = import_module("effects")
     values = {"RESULTS": tmp_path / "results", "SCALES": (1e-7, 30.0), "DIFFERS": (), "TICKS": 100}
     for name, value in values.items():
         monkeypatch.setattr(script, name, value)
     script.report("CartPole-survival")
     results = tmp_path / "results" / "cartpole-survival.csv"
-    rows = list(csv.DictReader(results.read_text().splitlines()))
+    rows = rows_of(results)
     assert {float(row["as_long"]) for row in rows if row["mutation"] == "scale 1e-07"} == {1.0}
     text = results.with_suffix(".md").read_text()
     assert "| scale 1e-07 | 1.000 (1.000 to 1.000) |" in text
@@ -176,11 +185,8 @@ def test_effects_of_mutations_are_reported(tmp_path: Path, monkeypatch: pytest.M
     assert f"| scale 30 | {np.mean(huge):.3f} (" in text
 
 
-def test_a_calibrated_mutation_is_held_against_scales_at_an_equal_share(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_calibrated_mutation_is_held_against_scales_at_an_equal_share() -> None:
     """Two scales leave 0 and 0.8 as they are, and improve 0.1 and 0.5: at 0.4 a scale improves 0.3."""
-    monkeypatch.syspath_prepend(str(EXPERIMENTS))
     script = import_module("effects")
     mutations = ["as set", "scale 0.1", "scale 0.01", "differs 0.02", "differs 0.1"]
     shares = {
@@ -206,7 +212,7 @@ def test_shadows_are_reported(ponged: Path) -> None:
         assert cells[0] == shadow.name
         assert int(cells[3]) == len(shadow.world)
         assert [int(cell) for cell in cells[8:10]] == list(shadow.longer)
-    rows = list(csv.DictReader((results / "pong-shadow.csv").read_text().splitlines()))
+    rows = rows_of(results / "pong-shadow.csv")
     means = [round(float(mean), 2) for shadow in found for mean in shadow.means[0]]
     assert [float(row["mean_life"]) for row in rows] == means
 
@@ -215,7 +221,6 @@ def test_shadows_are_reported(ponged: Path) -> None:
 def test_the_share_of_starts_that_a_world_masters_is_counted(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.syspath_prepend(str(EXPERIMENTS))
     monkeypatch.chdir(tmp_path)
     starts = import_module("starts")
     monkeypatch.setattr(starts, "TICKS", 60)
@@ -224,16 +229,13 @@ def test_the_share_of_starts_that_a_world_masters_is_counted(
     monkeypatch.setattr(starts, "GAMES", games)
     arms = [{"name": "with"}, {"name": "none", "inheritance": "founder"}]
     shared = {"task": "CartPole-survival", "cells": 8, "seeds": 2, "seed": 3}
-    values = {"question": "Any?", **shared, "stop": {"ticks": 1500, "until": "none"}, "arms": arms}
-    (file := tmp_path / "poles" / "any.toml").parent.mkdir()
-    file.write_text(tomli_w.dumps(values))
+    stop = {"ticks": 1500, "until": "none"}
+    file = written(tmp_path / "poles" / "any.toml", **shared, stop=stop, arms=arms)
     chosen = begin(file)
     for job in chosen.jobs:  # in this process, which keeps its compiled code
         live(chosen.plan, job, chosen.path)
     starts.report(file)
-    rows = list(
-        csv.DictReader((tmp_path / "poles/results/any-starts.csv").read_text().splitlines())
-    )
+    rows = rows_of(tmp_path / "poles/results/any-starts.csv")
     run = primordia.load("runs/any/with")
     lives = run.lives()
     for world, row in enumerate(row for row in rows if row["who"] == "with: all alive"):
@@ -251,9 +253,8 @@ def test_the_share_of_starts_that_a_world_masters_is_counted(
     assert "with: champion | 2 |" in (tmp_path / "poles/results/any-starts.md").read_text()
 
 
-def test_the_way_of_an_arm_to_its_targets_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_way_of_an_arm_to_its_targets_is_measured() -> None:
     """A tip moves between two places: first straight, then three times as far as needed."""
-    monkeypatch.syspath_prepend(str(EXPERIMENTS))
     reaching = import_module("reaching")
     straight, detour = np.linspace(0, 0.1, 11), np.tile([0.0, 0.1], 2)
     tip = np.concatenate([straight, straight[-2::-1], detour[1:]])
@@ -276,27 +277,23 @@ def test_robots_in_fresh_games_are_reported(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip("mujoco")
-    monkeypatch.syspath_prepend(str(EXPERIMENTS))
     monkeypatch.chdir(tmp_path)
-    file = tmp_path / "robots" / "arms.toml"
-    file.parent.mkdir()
-    values = {"question": "Do they?", "task": "Reacher-forager", "cells": 4, "genesis": "fill"}
-    values |= {"stop": {"ticks": 150}, "arms": [{"name": "heredity"}]}
-    file.write_text(tomli_w.dumps(values))
+    shared = {"task": "Reacher-forager", "cells": 4, "genesis": "fill", "stop": {"ticks": 150}}
+    file = written(tmp_path / "robots" / "arms.toml", **shared, arms=[{"name": "heredity"}])
     primordia.experiment(file)
     games, reaching = import_module("games"), import_module("reaching")
     monkeypatch.setattr(games, "TICKS", 120)
     monkeypatch.setattr(games, "GAMES", 2)
     games.report(file)
     results = file.parent / "results"
-    rows = list(csv.DictReader((results / "arms-games.csv").read_text().splitlines()))
+    rows = rows_of(results / "arms-games.csv")
     ways = ["fresh starts", "senses frozen", "blindly"]
     chosen = "heredity: champion", "best founder"
     assert [row["way"] for row in rows if row["who"] in chosen] == ways * 2
     assert {row["length"] for row in rows} == {"50.0"}
     assert all(float(row["score"]) < 0 for row in rows)
     reaching.report([file])
-    rows = list(csv.DictReader((results / "reaching.csv").read_text().splitlines()))
+    rows = rows_of(results / "reaching.csv")
     assert {row["who"] for row in rows} == {"arms, heredity", "arms, heredity: founders"}
     assert (results / "reaching.md").read_text().count("| arms") == 2
 

@@ -3,6 +3,7 @@
 import tomllib
 from pathlib import Path
 from typing import Any, cast
+from unittest.mock import MagicMock, call
 
 import pytest
 import tomli_w
@@ -48,15 +49,10 @@ def test_an_error_of_a_part_is_one_line_with_the_name_of_its_table(error: Except
     ("what", "kind"), [("habitat", ""), ("brain", "recurrent"), ("mutation", "gaussian")]
 )
 def test_a_table_without_a_name_describes_the_default_part(what: str, kind: str) -> None:
-    asked: list[object] = []
-
-    def find_part(name: object) -> Any:
-        asked.append(name)
-        return dict
-
-    assert make(what, {"depth": 0}, find_part) == {"depth": 0}
-    assert make(what, {PARTS[what]: "own", "depth": 0}, find_part) == {"depth": 0}
-    assert asked == [kind, "own"]
+    find = MagicMock(return_value=dict)
+    assert make(what, {"depth": 0}, find) == {"depth": 0}
+    assert make(what, {PARTS[what]: "own", "depth": 0}, find) == {"depth": 0}
+    assert find.mock_calls == [call(kind), call("own")]
 
 
 def test_settings_are_read_without_the_code_of_the_brain() -> None:

@@ -77,14 +77,10 @@ def test_what_is_shown_is_short_and_on_one_line(value: Any) -> None:
     )
 
 
-@pytest.mark.parametrize("more", [0, 1])
-def test_a_value_of_the_largest_length_is_shown_whole(more: int) -> None:
-    value = "".join(chr(ord("a") + n % 26) for n in range(SHOWN - 2 + more))
-    whole = f"'{value}'"
-    assert shown(value) == (whole if more <= 0 else f"{whole[: SHOWN - 3]}...")
-
-
-def test_a_large_number_is_shown_in_hexadecimal() -> None:
+def test_a_value_of_the_largest_length_is_shown_whole_and_a_large_number_in_hexadecimal() -> None:
+    longest = "x" * (SHOWN - 2)
+    assert shown(longest) == f"'{longest}'"
+    assert shown(f"{longest}y") == f"'{'x' * (SHOWN - 4)}..."
     assert shown(2**100 - 1) == "1267650600228229401496703205375"
     assert shown(2**100) == "0x10000000000000000000000000"
 
