@@ -130,13 +130,19 @@ def test_each_process_is_stopped_and_those_that_take_too_long_are_killed(tmp_pat
     assert place._workers == processes
 
 
+@pytest.fixture
+def ray(monkeypatch: pytest.MonkeyPatch) -> MagicMock:
+    """Return a Ray that is connected to a cluster whose nodes see all folders."""
+    made = MagicMock()
+    monkeypatch.setattr(on_ray, "_connected", lambda address: made)
+    monkeypatch.setattr(on_ray, "_check_folder", lambda *_: None)
+    return made
+
+
 @pytest.mark.parametrize(("device", "gpus"), [("cpu", 0), ("gpu", 1)])
 def test_a_task_of_a_cluster_has_one_core_and_a_gpu_if_asked(
-    device: str, gpus: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    device: str, gpus: int, ray: MagicMock, tmp_path: Path
 ) -> None:
-    ray = MagicMock()
-    monkeypatch.setattr(on_ray, "_connected", lambda address: ray)
-    monkeypatch.setattr(on_ray, "_check_folder", lambda *_: None)
     place = on_ray.OnRay(tmp_path, 7.0, device)
     options = ray.remote.return_value.options
     assert (options.call_args[1]["num_cpus"], options.call_args[1]["num_gpus"]) == (1, gpus)
@@ -145,15 +151,13 @@ def test_a_task_of_a_cluster_has_one_core_and_a_gpu_if_asked(
 
 
 def test_only_tasks_that_have_not_ended_are_stopped(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ray: MagicMock, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    ray, ended = MagicMock(), Future[Any]()
+    ended = Future[Any]()
     ended.set_result((3, "done"))
     refs = [MagicMock() for _ in range(3)]
     for ref, future in zip(refs, (Future(), ended, Future()), strict=True):
         ref.future.return_value = future
-    monkeypatch.setattr(on_ray, "_connected", lambda address: ray)
-    monkeypatch.setattr(on_ray, "_check_folder", lambda *_: None)
     monkeypatch.setattr(on_ray, "PATIENCE", 0.0)
     place = on_ray.OnRay(tmp_path, 7.0)
     ray.remote.return_value.options.return_value.remote.side_effect = refs
