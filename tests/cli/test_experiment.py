@@ -108,17 +108,13 @@ def test_results_are_written_when_no_job_is_left(
 
 
 def test_a_failed_job_is_named_and_may_be_tried_again(chosen: MagicMock) -> None:
-    def live_all(*given: Any) -> Result:
-        *_, failed = given
+    assert here("experiment", FILE, "--quiet").returncode == 0
+    *_, failed = chosen.live_all.call_args.args
+    with patch("primordia.cli.experiment.report") as report:
         for again in (True, False):
             failed(job(3), FAILED[0], again)
-        return Result(failed=FAILED)
-
-    chosen.live_all.side_effect = live_all
-    assert here("experiment", FILE, "--quiet").stderr.splitlines()[:2] == [
-        "primordia: job 3 (mild) failed: one reason; the job is tried again",
-        "primordia: job 3 (mild) failed: one reason",
-    ]
+    says = "job 3 (mild) failed: one reason"
+    assert report.mock_calls == [call(f"{says}; the job is tried again"), call(says)]
 
 
 ENDS: dict[str, tuple[int, str]] = {
