@@ -1,9 +1,9 @@
 """Tables of assays: each cell has the median and quartiles of its own values."""
 
 import json
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from unittest.mock import call, patch
+from unittest.mock import MagicMock, call, patch
 
 import numpy as np
 import pytest
@@ -56,8 +56,6 @@ def test_heredity_has_pairs_in_all_and_spreads_over_worlds() -> None:
         ("selection", ["", "", spread(400)]),
         ("transmission", ["", "", spread(500)]),
     ]
-    assert tables.heredity("run", found[:1]).title == "run: 1 world, medians (quartiles)"
-    assert tables.heredity("run", found[:2]).title == "run: 2 worlds, medians (quartiles)"
 
 
 def test_only_worlds_above_one_hold_their_line() -> None:
@@ -86,20 +84,19 @@ def test_effects_of_each_mutation_are_its_own() -> None:
     ]
     table = tables.effects("run", found)
     assert table.title == "run: 3 organisms; each mutation made 4 mutants of each"
-    assert list(table.head[1:]) == [
+    assert table.head == (
+        "",
         "as long",
         "longer",
         "a tenth longer",
         "a third shorter",
         "median life",
-    ]
+    )
     assert list(cells(table).items()) == [
         ("scale 1", ["0.583", "0.250", "0.167", "0.167", "205 (142 to 252)"]),
         ("as set", ["0.000", "0.750", "0.667", "0.167", "450 (352 to 458)"]),
     ]
     assert "The organisms lived 200 (150 to 250) ticks." in table.notes[0]
-    assert tables.effects("run", found[::3]).title.startswith("run: 1 organism; ")
-    assert tables.effects("run", found[:2]).title.startswith("run: 2 organisms; ")
 
 
 def test_ablated_lives_are_compared_with_intact_lives() -> None:
@@ -156,27 +153,19 @@ def test_a_line_is_a_column_with_its_first_last_and_largest_step() -> None:
         "as good from": ["13 (generation 6, tick 5,003)", "1 (generation 0, tick 0)"],
         "largest step": ["13: 300 to 1,900", "-"],
     }
-
-
-def test_a_line_tells_its_migrations_if_there_are_islands() -> None:
-    steps = [Step(0, 10, 0, "founder", 3, 90, "sea"), Step(9, 11, 5, "mutant", 3, 80, "lagoon")]
-    found = Line(11, 3, 9, 2, steps, migrations=1234)
-    table = cells(tables.line("run", [found]))
-    assert (table["island of birth"], table["migrations"]) == (["lagoon"], ["1,234"])
-    assert [step["island"] for step in found.to_dict()["steps"]] == ["sea", "lagoon"]
-    plain = Line(2, 0, 1, 2, [Step(0, 1, 0, "founder", 3, 90)]).to_dict()
+    plain = found[1].to_dict()
+    names = "generation", "organism", "born", "birth_cause", "recorded", "reborn"
+    assert plain["steps"][0] == dict(zip(names, (0, 1, 0, "founder", 3, 90), strict=True))
     assert "migrations" not in plain
-    assert plain["steps"] == [
-        {"generation": 0, "organism": 1, "born": 0, "birth_cause": "founder", "recorded": 3, "reborn": 90}
-    ]  # fmt: skip
 
 
-def test_a_line_tells_when_brain_and_body_became_good_if_bodies_are_inherited() -> None:
+def test_a_line_tells_of_islands_and_of_bodies_that_are_inherited() -> None:
     steps = [
-        Step(3 * n, 10 + n, 50 + n, "mutant", 3, 90, brain=brain, body=90)
-        for n, brain in enumerate((40, 90))
+        Step(3 * n, 10 + n, 50 + n, "mutant", 3, 90, island, brain, 90)
+        for n, (island, brain) in enumerate((("sea", 40), ("lagoon", 90)))
     ]
-    table = cells(tables.line("run", [Line(11, 3, 9, 2, steps)]))
+    table = cells(tables.line("run", [Line(11, 3, 9, 2, steps, migrations=1234)]))
+    assert (table["island of birth"], table["migrations"]) == (["lagoon"], ["1,234"])
     assert table["brain as good from"] == ["11 (generation 3, tick 51)"]
     assert table["body as good from"] == ["10 (generation 0, tick 50)"]
 
@@ -194,45 +183,30 @@ def test_two_genomes_share_the_living() -> None:
     assert table.notes[0].endswith(" Sign test over worlds: p = 1.")
 
 
-@dataclass(frozen=True)
-class Number:
-    """A result of an assay."""
-
-    number: int
-
-    def to_dict(self) -> dict[str, int]:
-        return {"number": self.number}
-
-
-@pytest.mark.parametrize("arms", [("a",), ("a", "b")])
-@pytest.mark.parametrize("as_json", [False, True])
+@pytest.mark.parametrize(("arms", "as_json"), [(("a",), True), (("a", "b"), False)])
 def test_each_of_several_arms_has_a_table_and_a_folder_of_figures(
     arms: tuple[str, ...], as_json: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """With --json, only the JSON is printed on standard output."""
-    found = {f"runs/{name}": [Number(place)] for place, name in enumerate(arms)}
-    pictures = [Path("x.png"), Path("x.svg")]
+    found = {f"runs/{name}": [MagicMock()] for name in arms}
+    for name, (result,) in found.items():
+        result.to_dict.return_value = {"of": name}
     with (
         patch("primordia.figures.assays.effects", side_effect=tuple) as draw,
-        patch("primordia.figures.style.save", return_value=pictures) as save,
-        patch.object(options, "show_table") as table,
+        patch("primordia.figures.style.save", return_value=["x.png", "x.svg"]) as save,
+        patch.object(tables, "effects", lambda arm, _: tables.Told(f"table of {arm}", "h", ["1"])),
     ):
-        options.tell("effects", found, as_json, tmp_path, lambda arm, of: tables.Told(arm, "h", of))
+        options.tell("effects", found, as_json, tmp_path)
     folders = [tmp_path / name if len(arms) > 1 else tmp_path for name in arms]
     assert draw.call_args_list == [call(of) for of in found.values()]
-    assert save.call_args_list == [
-        call(tuple(of), folder / "effects")
-        for of, folder in zip(found.values(), folders, strict=True)
-    ]
-    shown = [call(arm, "h", of, ()) for arm, of in found.items()]
-    assert table.call_args_list == ([] if as_json else shown)
+    assert [each.args[1] for each in save.call_args_list] == [each / "effects" for each in folders]
     out, err = capsys.readouterr()
     figures = "Figure: x.png and x.svg\n" * len(arms)
     if as_json:
-        expected = {arm: [{"number": place}] for place, arm in enumerate(found)}
-        assert (json.loads(out), err) == (expected, figures)
+        assert (json.loads(out), err) == ({"runs/a": [{"of": "runs/a"}]}, figures)
     else:
-        assert (out, err) == (figures, "")
+        assert (out.index("table of runs/a") < out.index("table of runs/b"), err) == (True, "")
+        assert out.endswith(figures)
 
 
 def test_unknown_numbers_are_dashes_and_zeros_are_not() -> None:
@@ -302,10 +276,3 @@ def test_generalists_are_told_with_the_births_at_which_their_line_gained_islands
     }
     never = [replace(found[1], line=line[:2])]
     assert [row[0] for row in tables.generalists("run", never)[2].rows] == ["none"]
-
-
-def test_each_table_of_an_assay_with_several_is_shown(capsys: pytest.CaptureFixture[str]) -> None:
-    told = tables.Told("first", ("", "a"), [("x", "1")]), tables.Told("second", ("",), [("y",)])
-    options.tell("some", {"run": []}, False, None, lambda name, found: [*told])
-    shown = capsys.readouterr().out
-    assert shown.index("first") < shown.index("x") < shown.index("second") < shown.index("y")

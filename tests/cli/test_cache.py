@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from unittest.mock import MagicMock
 
 import pytest
 
@@ -11,10 +12,6 @@ from primordia import own_code
 from primordia.cli import cache
 from primordia.runs import code
 from tests.commands import COMMAND, environment
-
-CPU = (
-    "processor\t: 0\nmodel name\t: one\nflags\t\t: fpu avx2\ncpu MHz\t\t: {mhz}\n\nprocessor\t: 1\n"
-)
 
 
 @pytest.mark.slow
@@ -44,26 +41,16 @@ def test_a_command_keeps_its_compiled_code(tmp_path: Path) -> None:
     assert run("third") == kept
 
 
-def test_a_cache_that_cannot_be_written_is_not_used(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_without_a_folder_nothing_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A container may start a process of a user that the system does not know."""
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
     monkeypatch.delenv("JAX_COMPILATION_CACHE_DIR", raising=False)
     cache.keep_compiled_code()
-    assert "JAX_COMPILATION_CACHE_DIR" not in os.environ
-
-
-def test_without_a_home_folder_nothing_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A container may start a process of a user that the system does not know."""
-
-    def unknown(*_: object, **__: object) -> Path:
-        raise RuntimeError("could not determine the home directory")
-
+    unknown = MagicMock(side_effect=RuntimeError("could not determine the home directory"))
     monkeypatch.setattr(cache, "user_cache_path", unknown)
     monkeypatch.setattr(code, "_store", unknown)
     monkeypatch.setattr(code, "_trusted", set())
-    monkeypatch.delenv("JAX_COMPILATION_CACHE_DIR", raising=False)
     cache.keep_compiled_code()
     assert "JAX_COMPILATION_CACHE_DIR" not in os.environ
     code.trust(code.Code({"a.py": own_code.Source(Path("a.py"), b"")}))
@@ -103,25 +90,16 @@ def test_the_folder_is_set_before_jax_checks_the_users_variables(
     assert os.environ["JAX_COMPILATION_CACHE_DIR"].startswith(str(tmp_path))
 
 
-def test_processors_of_other_features_have_other_folders(tmp_path: Path) -> None:
-    def named(text: str) -> str:
-        (tmp_path / "cpuinfo").write_text(text)
-        return cache.processor(tmp_path / "cpuinfo")
+def test_each_kind_of_processor_has_its_own_folder(tmp_path: Path) -> None:
+    """Arm and Intel have different names for features. Only the features of the first core count."""
 
-    one = named(CPU.format(mhz=2000))
-    assert named(CPU.format(mhz=3000)) == one
-    assert named(CPU.format(mhz=2000).replace("avx2", "avx2 avx512f")) != one
-    assert cache.processor(tmp_path / "missing") != one
-
-
-@pytest.mark.parametrize("line", ["model name", "flags", "CPU implementer", "CPU part", "Features"])
-def test_only_the_features_of_the_first_core_count(line: str, tmp_path: Path) -> None:
-    """Arm and Intel have different names for features."""
-
-    def named(value: str, clock: int = 2000, other: str = "x") -> str:
+    def named(line: str, value: str, clock: int = 2000, other: str = "x") -> str:
         core = f"processor : 0\n{line} : {value}\nBogoMIPS : {clock}\n"
         (tmp_path / "cpuinfo").write_text(f"{core}\nprocessor : 1\n{line} : {other}\n")
         return cache.processor(tmp_path / "cpuinfo")
 
-    assert named("x") != named("y")
-    assert named("x") == named("x", clock=3000) == named("x", other="y")
+    for line in ("model name", "flags", "CPU implementer", "CPU part", "Features"):
+        one = named(line, "x")
+        assert named(line, "y") != one
+        assert named(line, "x", clock=3000, other="y") == one
+        assert cache.processor(tmp_path / "missing") != one

@@ -45,19 +45,6 @@ def test_the_text_about_an_organism_has_its_spreads_and_counts() -> None:
     ]
 
 
-def test_the_extremes_are_shown_even_if_the_quartiles_are_equal() -> None:
-    lived = games([20, 100, 100, 100, 100])
-    found = Evaluation(7, 2, "live", lived, None, deterministic=False)
-    spread = "median 100 (quartiles 100, 100), minimum 20, maximum 100"
-    assert evaluation_text(found, {}).splitlines()[-1] == f"  lifespan  {spread}"
-
-
-def test_random_games_may_happen_to_be_equal() -> None:
-    equal = games([9, 9])._replace(course=np.zeros(2, np.uint64))
-    found = Evaluation(7, 0, "live", equal, None, deterministic=False)
-    assert evaluation_text(found, {}).splitlines()[1] == "  1 distinct game"
-
-
 def standing(name: str, chosen_from: int, *lived: tuple[int, int], score: int = 0) -> Standing:
     """Return a group with organisms of (world, ticks); whole games have a length of twice the ticks."""
     each = [
@@ -93,8 +80,7 @@ def test_each_group_has_a_row_with_the_medians_of_its_worlds() -> None:
     assert rows == [["champion", "1", "2", "1", "100"]]
 
 
-@pytest.mark.parametrize("worlds", [1, 2])
-@pytest.mark.parametrize("same", [(True, True), (True, False)])
+@pytest.mark.parametrize(("worlds", "same"), [(1, (True, True)), (2, (True, False))])
 def test_notes_are_only_those_that_apply(worlds: int, same: tuple[bool, bool]) -> None:
     """The note about equal games needs equal games of every champion."""
     each = [played(world % worlds, [9], same=one) for world, one in enumerate(same)]
@@ -110,11 +96,9 @@ def test_notes_are_only_those_that_apply(worlds: int, same: tuple[bool, bool]) -
     ("words", "says"),
     [
         ((), "RUN: games cut at 100,000 ticks"),
-        (("--ticks", 1234, "--sticky", 0.5), "RUN: games cut at 1,234 ticks, sticky 0.5"),
-        (("--island", "i"), "RUN, born on i: games cut at 100,000 ticks"),
         (
-            ("--island", "i", "--on", "j"),
-            "RUN, born on i, playing on j: games cut at 100,000 ticks",
+            ("--ticks", 1234, "--sticky", 0.5, "--island", "i", "--on", "j"),
+            "RUN, born on i, playing on j: games cut at 1,234 ticks, sticky 0.5",
         ),
         (("--freeze-senses",), "RUN: games cut at 100,000 ticks, senses frozen"),
         (

@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import primordia
@@ -20,9 +20,6 @@ from primordia.runs import loop
 from primordia.settings.fields import setting_fields
 from tests.commands import complains, here
 from tests.trouble import TASK
-
-SOME = settings(max_examples=50, suppress_health_check=[HealthCheck.function_scoped_fixture])
-THOUSANDS = settings(SOME, max_examples=5000)
 
 
 @pytest.fixture
@@ -142,55 +139,48 @@ EXPRESSIONS = st.sampled_from(
 LINES = st.lists(FLAGS, max_size=4).map(lambda parts: [word for part in parts for word in part])
 
 
-@SOME
-@given(LINES)
-def test_any_command_line_is_accepted_or_refused(started: list[Config], line: list[str]) -> None:
-    accepted_or_refused([TASK, "--quiet", *line], started)
+EXAMPLES = pytest.mark.parametrize("examples", [50, pytest.param(5000, marks=pytest.mark.slow)])
 
 
-@pytest.mark.slow
-@THOUSANDS
-@given(LINES)
-def test_thousands_of_command_lines_are_accepted_or_refused(
-    started: list[Config], line: list[str]
-) -> None:
-    accepted_or_refused([TASK, "--quiet", *line], started)
+@EXAMPLES
+def test_any_command_line_is_accepted_or_refused(examples: int, started: list[Config]) -> None:
+    @settings(max_examples=examples)
+    @given(LINES)
+    def check(line: list[str]) -> None:
+        accepted_or_refused([TASK, "--quiet", *line], started)
+
+    check()
 
 
-@settings(SOME, max_examples=50)  # simulators take a while to check their settings
-@given(st.sampled_from(ANY), VALUES | EXPRESSIONS)
+@EXAMPLES
 def test_any_value_of_a_setting_is_accepted_or_refused(
-    started: list[Config], setting: tuple[str, str], value: str
+    examples: int, started: list[Config]
 ) -> None:
-    task, path = setting
-    accepted_or_refused([task, "--quiet", f"--{path}={value}"], started)
+    @settings(max_examples=examples)
+    @given(st.sampled_from(ANY), VALUES | EXPRESSIONS)
+    def check(setting: tuple[str, str], value: str) -> None:
+        task, path = setting
+        accepted_or_refused([task, "--quiet", f"--{path}={value}"], started)
+
+    check()
 
 
-@pytest.mark.slow
-@THOUSANDS
-@given(st.sampled_from(ANY), VALUES | EXPRESSIONS)
-def test_thousands_of_values_are_accepted_or_refused(
-    started: list[Config], setting: tuple[str, str], value: str
-) -> None:
-    task, path = setting
-    accepted_or_refused([task, "--quiet", f"--{path}={value}"], started)
-
-
-@pytest.mark.parametrize("name", KEYWORDS)
+@pytest.mark.parametrize(
+    ("command", "line"),
+    [
+        (run, ["run", TASK, "--quiet", "--out", "run"]),
+        (fork, ["fork", "none", "--at", "3", "--out", "run"]),
+        (evaluate, ["evaluate", "none"]),
+    ],
+)
 def test_no_flag_is_an_argument_of_a_python_function(
-    name: str, started: list[Config], tmp_path: Path
+    command: click.Command, line: list[str], started: list[Config]
 ) -> None:
     """Flags are settings; what Python calls `self`, `listen` or `task` is none."""
-    lines = {
-        run: ["run", TASK, "--quiet", "--out", "run"],
-        fork: ["fork", "none", "--at", "3", "--out", "run"],
-        evaluate: ["evaluate", "none"],
-    }
-    for command, line in lines.items():
-        options = {option for each in command.params for option in each.opts}
+    options = {option for each in command.params for option in each.opts}
+    for name in KEYWORDS:
         if f"--{name}" not in options:
-            done = here(*line, f"--{name}", "3")
-            complains(done, 2, name if command is run else "")
+            complains(here(*line, f"--{name}", "3"), 2, name if command is run else "")
     assert not started
 
 
@@ -204,12 +194,9 @@ def test_a_misspelt_option_is_corrected(command: click.Command) -> None:
 
 
 def test_an_argument_given_as_a_flag_is_explained() -> None:
-    complains(
-        here("run", "--task", TASK), 2, "give the argument without a flag:", "run TASK|FILE.toml"
-    )
-    complains(
-        here("fork", "--run", "x", "--at", "3"), 2, "give the argument without a flag:", "fork RUN"
-    )
+    says = "give the argument without a flag:"
+    complains(here("run", "--task", TASK), 2, says, "run TASK|FILE.toml")
+    complains(here("fork", "--run", "x"), 2, says, "fork RUN")
 
 
 def test_words_after_two_hyphens_are_no_flags(started: list[Config]) -> None:

@@ -48,6 +48,7 @@ def test_the_settings_are_those_of_the_chosen_parts() -> None:
     assert "--brain.hidden" not in brains["linear"]
     assert brains["wrong"] == {"--brain.kind"} < brains["default"]
     assert "--brain.kind" in dict(setting_rows(None, {"brain": 3}))
+    assert [name for name, _ in setting_rows(None, {}) if "habitat" in name] == ["--habitat.name"]
 
 
 def test_settings_that_a_user_cannot_choose_are_left_out() -> None:
@@ -80,7 +81,6 @@ def test_the_settings_of_a_run_are_its_own(tmp_path: Path) -> None:
         (("run", TASK), TASK, f"values of {TASK})"),
         (("run", "a.toml"), "a.toml", "values of a.toml)"),
         (("run", "gym:X-v0"), "gym:X-v0", "values of gym:X-v0)"),
-        (("run", "gymnax:a:B"), "gymnax:a:B", "values of gymnax:a:B)"),
         (("fork", "RUN", "--at", 3), Path("RUN"), "values of RUN)"),
         (("fork", "other", "--at", 3), None, "fork RUN --help` also"),
     ],

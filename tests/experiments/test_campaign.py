@@ -78,16 +78,14 @@ def test_info_has_for_each_arm_its_own_settings_and_worlds(chosen: Campaign) -> 
         "jobs": {"done": 1, "running": 0, "failed": 0, "waiting": 3},
         "arms": [
             {"name": "mild", "settings": {"hazard": 0.01}, "worlds": []},
-            {
-                "name": "harsh",
-                "settings": {"hazard": 0.05},
-                "worlds": worlds[chosen.path / "harsh"],
-            },
+            {"name": "harsh", "settings": {"hazard": 0.05}, "worlds": [{"seed": 3}, {"seed": 4}]},
         ],
     }
 
 
-def test_results_are_those_of_all_arms_in_their_order(chosen: Campaign) -> None:
+def test_results_are_those_of_all_arms_in_their_order_and_one_arm_has_none(
+    chosen: Campaign, tmp_path: Path
+) -> None:
     for name in chosen.arms:
         (chosen.path / name).mkdir()
     with (
@@ -95,15 +93,10 @@ def test_results_are_those_of_all_arms_in_their_order(chosen: Campaign) -> None:
         patch("primordia.experiments.results.write") as asked,
     ):
         assert chosen.gather() is asked.return_value
+        one = begin(write(tmp_path, arms=[{"name": "mild"}]), tmp_path / "one")
+        assert one.gather() == []
     out = chosen.path
     asked.assert_called_once_with(out / "results", "Is it mild?", [[out / "mild"], [out / "harsh"]])
-
-
-def test_one_arm_has_no_results(tmp_path: Path) -> None:
-    one = begin(write(tmp_path, arms=[{"name": "mild"}]), tmp_path / "out")
-    with patch("primordia.experiments.results.write") as asked:
-        assert one.gather() == []
-    asked.assert_not_called()
 
 
 def test_a_directory_has_the_name_of_the_file(

@@ -4,7 +4,6 @@ import csv
 import os
 import shutil
 import signal
-from concurrent.futures import Future
 from pathlib import Path
 
 import pytest
@@ -13,8 +12,7 @@ import primordia
 from primordia.experiments import here as on_cores
 from primordia.experiments import job as jobs
 from primordia.experiments.campaign import Campaign, begin
-from primordia.experiments.dispatch import live_all
-from primordia.experiments.plan import Ending, Job
+from primordia.experiments.plan import Ending
 from primordia.runs import directory, loop
 from tests.commands import complains, here
 from tests.experiments.meadows import write
@@ -162,39 +160,3 @@ def test_a_job_that_another_process_lives_is_left_to_it(tmp_path: Path) -> None:
     with directory.locked(run):
         assert jobs.ending_of(chosen.plan, chosen.jobs[0], chosen.path).state == "elsewhere"
         complains(here("experiment", chosen.path, "--job", 0), 2, "run by another process")
-
-
-class Fated:
-    """A place in which each job ends as foretold, try by try."""
-
-    def __init__(self, *fates: list[Ending]) -> None:
-        self.fates = fates
-
-    def submit(self, job: Job) -> Future[Ending]:
-        future: Future[Ending] = Future()
-        future.set_result(self.fates[job.number].pop(0))
-        return future
-
-    def stop(self) -> None: ...
-
-
-def test_each_job_that_might_succeed_is_tried_three_times(tmp_path: Path) -> None:
-    """Neither failures of other jobs count, nor signals to the job's own process."""
-    chosen, told = begin(write(tmp_path), tmp_path / "out"), list[tuple[int, bool]]()
-    fail, lost = (lambda job: Ending(job, "failed")), Ending(1, "failed", again=False)
-    signal = Ending(0, "stopped")
-    done = [Ending(number, "done") for number in range(4)]
-    place = Fated(
-        [signal, signal, *[fail(0)] * 4],
-        [lost] * 2,
-        [fail(2), fail(2), done[2]],
-        [fail(3), done[3]],
-    )
-    result = live_all(
-        chosen.jobs, place, lambda: None, lambda job, _, again: told.append((job.number, again))
-    )
-    assert (result.done, [ending.job for ending in result.failed]) == (2, [1, 0])
-    assert [len(fates) for fates in place.fates] == [1, 1, 0, 0]
-    assert sorted(told) == [
-        (0, False), (0, True), (0, True), (1, False), (2, True), (2, True), (3, True)
-    ]  # fmt: skip

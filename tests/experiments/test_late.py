@@ -28,14 +28,6 @@ def last(*worlds: list[tuple[int, int]]) -> list[dict[str, float]]:
     return last_deaths(run, COMPARED)
 
 
-def test_the_best_score_may_be_below_zero() -> None:
-    """The last quarter begins after tick 90. The best score counts all deaths."""
-    first, second = last([(40, -1), (95, -7), (100, -9)], [(30, 3), (110, -2)])
-    assert (first["best_score"], second["best_score"]) == (-1, 3)
-    assert (first["late_score"], second["late_score"]) == (-8, -2)
-    assert (first["late_deaths"], second["late_lifespan"]) == (2, 110)
-
-
 def test_the_last_quarter_has_the_tick_of_its_end_and_not_that_of_its_beginning() -> None:
     """The last quarter is ticks 91 to 120. A later death does not count."""
     before, within, after = [(20, 5), (90, 70)], [(91, 4), (100, 1), (120, 30)], [(121, 99)]

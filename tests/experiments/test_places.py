@@ -7,7 +7,7 @@ from concurrent.futures import Future
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
-from unittest.mock import MagicMock, call
+from unittest.mock import MagicMock, call, patch
 
 import pytest
 
@@ -17,7 +17,7 @@ from primordia.errors import InputError, Trouble
 from primordia.experiments import dispatch, on_ray
 from primordia.experiments import job as jobs
 from primordia.experiments import plan as plans
-from primordia.experiments.campaign import Campaign, begin
+from primordia.experiments.campaign import Campaign
 from primordia.experiments.dispatch import live_all
 from primordia.experiments.here import PATIENCE, Here
 from primordia.experiments.plan import Ending, Job
@@ -26,20 +26,49 @@ from tests.experiments.meadows import write
 JOB = Job(3, "a", 0, 1, "a/0")
 
 
-class Place:
-    """A place in which job K ends in state K of a list."""
+def fail(job: int, again: bool = False) -> Ending:
+    return Ending(job, "failed", f"reason {job}", again)
 
-    def __init__(self, *states: Any) -> None:
-        self._states, self.submitted = states, list[int]()
+
+class Place:
+    """A place in which each job ends as foretold, try by try."""
+
+    def __init__(self, *fates: list[Ending]) -> None:
+        self.fates = fates
 
     def submit(self, job: Job) -> Future[Ending]:
         future: Future[Ending] = Future()
-        state = self._states[job.number]
-        self.submitted.append(job.number)
-        future.set_result(Ending(job.number, state, error=f"reason {job.number}", again=False))
+        future.set_result(self.fates[job.number].pop(0))
         return future
 
     def stop(self) -> None: ...
+
+
+def test_each_job_that_might_succeed_is_tried_three_times() -> None:
+    """Neither failures of other jobs count, nor signals to the job's own process. A job of another
+    process is neither done nor failed."""
+    told, looks, signal = list[tuple[int, bool]](), list[int](), Ending(0, "stopped")
+    done, elsewhere = (lambda job: Ending(job, "done")), Ending(4, "elsewhere")
+    place = Place(
+        [signal, signal, *[fail(0, again=True)] * 4],
+        [fail(1)] * 2,
+        [fail(2, again=True), fail(2, again=True), done(2)],
+        [fail(3, again=True), done(3)],
+        [elsewhere] * 2,
+    )
+    result = live_all(
+        [Job(number, "a", number, 1, f"a/{number}") for number in range(5)],
+        place,
+        lambda: looks.append(len(told)),
+        lambda job, _, again: told.append((job.number, again)),
+    )
+    assert (result.done, result.elsewhere, result.stopped) == (2, 1, False)
+    assert [ending.job for ending in result.failed] == [1, 0]
+    assert [len(fates) for fates in place.fates] == [1, 1, 0, 0, 1]
+    assert sorted(told) == [
+        (0, False), (0, True), (0, True), (1, False), (2, True), (2, True), (3, True)
+    ]  # fmt: skip
+    assert looks[-1] == len(told), "also after the last job has ended"
 
 
 @pytest.mark.parametrize(
@@ -48,9 +77,7 @@ class Place:
         (None, "cpu", 9, 3),
         (None, "cpu", 2, 2),
         (None, "gpu", 9, 1),
-        (5, "cpu", 9, 5),
         (5, "gpu", 9, 5),
-        (5, "cpu", 4, 4),
     ],
 )
 def test_jobs_run_at_once_on_each_core_unless_a_number_is_given(
@@ -63,14 +90,13 @@ def test_jobs_run_at_once_on_each_core_unless_a_number_is_given(
     made.assert_called_once_with(Path("out"), at_once, 7.0, device)
 
 
-@pytest.mark.parametrize(("given", "address"), [("", None), ("host:1", "host:1")])
-def test_a_cluster_has_an_address_or_is_that_of_this_machine(
-    given: str, address: str | None, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    made = MagicMock()
-    monkeypatch.setattr(dispatch, "OnRay", made)
-    dispatch.place_for(Path("out"), 4, None, given, 7.0, "gpu")
-    made.assert_called_once_with(Path("out"), 7.0, "gpu", address)
+def test_a_cluster_has_an_address_or_is_that_of_this_machine() -> None:
+    with patch.object(dispatch, "OnRay") as made:
+        for given, address in (("", None), ("host:1", "host:1")):
+            dispatch.place_for(Path("out"), 4, None, given, 7.0, "gpu")
+            assert made.call_args == call(Path("out"), 7.0, "gpu", address)
+    with pytest.raises(InputError, match="--jobs is for jobs on this machine"):
+        dispatch.place_for(Path("out"), 4, 1, "")
 
 
 def test_a_process_gets_the_interval_of_checkpoints_and_the_device(
@@ -104,13 +130,19 @@ def test_each_process_is_stopped_and_those_that_take_too_long_are_killed(tmp_pat
     assert place._workers == processes
 
 
+@pytest.fixture
+def ray(monkeypatch: pytest.MonkeyPatch) -> MagicMock:
+    """Return a Ray that is connected to a cluster whose nodes see all folders."""
+    made = MagicMock()
+    monkeypatch.setattr(on_ray, "_connected", lambda address: made)
+    monkeypatch.setattr(on_ray, "_check_folder", lambda *_: None)
+    return made
+
+
 @pytest.mark.parametrize(("device", "gpus"), [("cpu", 0), ("gpu", 1)])
 def test_a_task_of_a_cluster_has_one_core_and_a_gpu_if_asked(
-    device: str, gpus: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    device: str, gpus: int, ray: MagicMock, tmp_path: Path
 ) -> None:
-    ray = MagicMock()
-    monkeypatch.setattr(on_ray, "_connected", lambda address: ray)
-    monkeypatch.setattr(on_ray, "_check_folder", lambda *_: None)
     place = on_ray.OnRay(tmp_path, 7.0, device)
     options = ray.remote.return_value.options
     assert (options.call_args[1]["num_cpus"], options.call_args[1]["num_gpus"]) == (1, gpus)
@@ -119,15 +151,13 @@ def test_a_task_of_a_cluster_has_one_core_and_a_gpu_if_asked(
 
 
 def test_only_tasks_that_have_not_ended_are_stopped(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ray: MagicMock, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    ray, ended = MagicMock(), Future[Any]()
+    ended = Future[Any]()
     ended.set_result((3, "done"))
     refs = [MagicMock() for _ in range(3)]
     for ref, future in zip(refs, (Future(), ended, Future()), strict=True):
         ref.future.return_value = future
-    monkeypatch.setattr(on_ray, "_connected", lambda address: ray)
-    monkeypatch.setattr(on_ray, "_check_folder", lambda *_: None)
     monkeypatch.setattr(on_ray, "PATIENCE", 0.0)
     place = on_ray.OnRay(tmp_path, 7.0)
     ray.remote.return_value.options.return_value.remote.side_effect = refs
@@ -141,12 +171,11 @@ def test_only_tasks_that_have_not_ended_are_stopped(
     ("one", "last", "says"),
     [
         (True, True, ""),
-        (True, False, "node 10.0.0.3 does not see OUT; choose an --out in a folder"),
-        (False, True, "node 10.0.0.1 does not see OUT; choose"),
+        (False, True, "node 10.0.0.1 does not see OUT; choose an --out in a folder"),
         (True, ValueError("lost\nin space"),
          r"10.0.0.3 gave no answer \(ValueError: lost\) when asked whether it sees OUT; choose"),
     ],
-    ids=["both", "one", "the other", "no answer"],
+    ids=["both", "one", "no answer"],
 )  # fmt: skip
 def test_each_node_that_is_alive_is_asked_whether_it_sees_the_folder(
     one: Any, last: Any, says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -189,6 +218,9 @@ def test_an_address_with_a_port_is_tried_before_ray_tries_it() -> None:
     for address in (there, f"ray://{there}", "host:", "host:99999999999"):
         with pytest.raises(InputError, match=f"no cluster answers at {address}: "):
             on_ray._check_address(address)
+    with patch("primordia.experiments.on_ray.socket.create_connection") as connected:
+        on_ray._check_address("ray://[2001:db8::1]:10001")
+    connected.assert_called_once_with(("2001:db8::1", 10001), on_ray.CONNECT)
 
 
 @pytest.mark.parametrize(
@@ -207,7 +239,7 @@ def test_a_ray_that_does_not_answer_or_start_is_one_line(
 
 @pytest.mark.parametrize(
     ("held", "state", "seconds"),
-    [(2, "done", 2), (2, "failed", 2), (200, "elsewhere", on_ray.RELEASE + 1)],
+    [(2, "failed", 2), (200, "elsewhere", on_ray.RELEASE + 1)],
 )
 def test_a_task_waits_for_the_lock_of_a_dead_node_for_a_while(
     held: int, state: Any, seconds: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -240,18 +272,8 @@ def test_a_task_that_a_cluster_loses_is_a_failure_of_its_job() -> None:
     assert on_ray._ending(JOB, lost) == Ending(3, "failed", "RuntimeError: the node died")
 
 
-def test_jobs_of_other_processes_are_neither_done_nor_failed(tmp_path: Path) -> None:
-    chosen, looks = begin(write(tmp_path), tmp_path / "out"), list[int]()
-    place = Place("elsewhere", "done", "elsewhere", "failed")
-    result = live_all(chosen.jobs, place, lambda: looks.append(1), lambda *_: None)
-    assert (result.done, result.elsewhere, result.stopped) == (1, 2, False)
-    assert [ending.job for ending in result.failed] == [3]
-    assert place.submitted == [0, 1, 2, 3], "each once, in order"
-    assert len(looks) == 2, "also after the last job has ended"
-
-
 def test_python_raises_the_first_failure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    place = Place("done", "failed", "elsewhere", "failed")
+    place = Place([Ending(0, "done")], [fail(1)], [Ending(2, "elsewhere")], [fail(3)])
     monkeypatch.setattr(api, "place_for", lambda *_: place)
     with pytest.raises(Trouble, match="failed jobs: 2; job 1: reason 1"):
         primordia.experiment(write(tmp_path), tmp_path / "out")
@@ -261,7 +283,8 @@ def test_python_passes_its_options_to_the_place(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Only jobs of the named arm run. Jobs of the other arm are left, so no results are written."""
-    asked, looks = MagicMock(return_value=Place(*["done"] * 4)), list[dict[str, int]]()
+    place = Place(*[[Ending(number, "done")] for number in range(4)])
+    asked, looks = MagicMock(return_value=place), list[dict[str, int]]()
     gathered = MagicMock()
     monkeypatch.setattr(api, "place_for", asked)
     monkeypatch.setattr(Campaign, "gather", gathered)
@@ -273,17 +296,3 @@ def test_python_passes_its_options_to_the_place(
     asked.assert_called_once_with(out, 2, 5, "r", 7.0, "gpu")
     assert looks[-1] == {"done": 0, "running": 0, "failed": 0, "waiting": 4}
     gathered.assert_not_called()
-
-
-def test_a_cluster_has_no_number_of_jobs() -> None:
-    with pytest.raises(InputError, match="--jobs is for jobs on this machine"):
-        dispatch.place_for(Path("out"), 4, 1, "")
-
-
-def test_the_brackets_of_an_address_are_not_part_of_the_host(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    connected = MagicMock()
-    monkeypatch.setattr("primordia.experiments.on_ray.socket.create_connection", connected)
-    on_ray._check_address("ray://[2001:db8::1]:10001")
-    connected.assert_called_once_with(("2001:db8::1", 10001), on_ray.CONNECT)

@@ -1,6 +1,5 @@
 """Plans of experiments: what a file says, how arms are cut into jobs, and what is refused."""
 
-import shutil
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -13,7 +12,6 @@ from primordia.experiments.campaign import begin, planned
 from primordia.experiments.file import _of_runs, read
 from primordia.experiments.job import configuration
 from primordia.experiments.plan import Job
-from primordia.runs import loop
 from tests.commands import complains, here
 from tests.experiments.meadows import ARMS, write
 from tests.worlds import MEADOW, MILL, config
@@ -23,17 +21,7 @@ def jobs(file: Path) -> list[Job]:
     return read(file, file.parent / "out").jobs()
 
 
-def test_arms_are_cut_into_jobs(tmp_path: Path) -> None:
-    got = jobs(write(tmp_path))
-    assert [(job.number, job.folder, job.first, job.worlds) for job in got] == [
-        (0, "mild/0-1", 0, 2),
-        (1, "mild/2", 2, 1),
-        (2, "harsh/0-1", 0, 2),
-        (3, "harsh/2", 2, 1),
-    ]
-
-
-@pytest.mark.parametrize(("seeds", "worlds"), [(1, 1), (7, 3), (12, 4), (101, 10), (5, 100)])
+@pytest.mark.parametrize(("seeds", "worlds"), [(7, 3), (12, 4)])
 def test_each_world_of_an_arm_is_in_one_job(tmp_path: Path, seeds: int, worlds: int) -> None:
     plan = read(write(tmp_path, seeds=seeds, jobs={"worlds": worlds}), tmp_path / "out")
     for arm in ("mild", "harsh"):
@@ -47,7 +35,7 @@ def test_each_world_of_an_arm_is_in_one_job(tmp_path: Path, seeds: int, worlds: 
 
 @pytest.mark.parametrize(
     ("seeds", "names"),
-    [(9, ["0-4", "5-8"]), (10, ["0-4", "5-9"]), (11, ["00-04", "05-09", "10"]), (5, ["0-4"])],
+    [(10, ["0-4", "5-9"]), (11, ["00-04", "05-09", "10"]), (5, ["0-4"])],
 )
 def test_numbers_in_folders_of_jobs_have_as_many_digits_as_the_last_world(
     tmp_path: Path, seeds: int, names: list[str]
@@ -56,19 +44,16 @@ def test_numbers_in_folders_of_jobs_have_as_many_digits_as_the_last_world(
     assert [job.folder for job in got] == [f"mild/{name}" for name in names]
 
 
-def test_arms_with_different_numbers_of_worlds_take_turns_until_one_has_no_more(
+def test_arms_of_different_sizes_take_turns_until_one_has_no_more(
     tmp_path: Path,
 ) -> None:
     arms = [{"name": "few", "seeds": 1}, {"name": "many", "seeds": 5}, {"name": "some"}]
-    left = begin(write(tmp_path, arms=arms), tmp_path / "out").left()
-    assert [(job.arm, job.first, job.worlds) for job in left] == [
-        ("few", 0, 1),
-        ("many", 0, 2),
-        ("some", 0, 2),
-        ("many", 2, 2),
-        ("some", 2, 1),
-        ("many", 4, 1),
-    ]
+    chosen = begin(write(tmp_path, arms=arms), tmp_path / "out")
+    assert [(job.number, job.folder, job.first, job.worlds) for job in chosen.left()] == [
+        (0, "few/0", 0, 1), (1, "many/0-1", 0, 2), (4, "some/0-1", 0, 2), (2, "many/2-3", 2, 2),
+        (5, "some/2", 2, 1), (3, "many/4", 4, 1),
+    ]  # fmt: skip
+    assert [job.number for job in chosen.jobs] == [*range(6)]
 
 
 def test_a_job_has_ten_worlds_in_jax_and_one_on_the_host(tmp_path: Path) -> None:
@@ -86,8 +71,6 @@ def test_the_largest_number_of_jobs_is_allowed(
     monkeypatch.setattr(plans, "LARGEST", 3)
     with pytest.raises(InputError, match="4 jobs are more than 3"):
         plans.recorded(tmp_path / "out")
-    with pytest.raises(InputError, match=r"4 jobs are more than 3; raise jobs\.worlds"):
-        read(write(tmp_path), tmp_path / "new")
 
 
 def test_a_plan_is_read_as_it_was_written(tmp_path: Path) -> None:
@@ -143,8 +126,6 @@ def test_further_arms_come_last_and_change_nothing_else(tmp_path: Path) -> None:
     ("changes", "words"),
     [
         ({"arms": [{"name": "a"}, {"name": "a"}]}, "'a' cannot name an arm, or names two arms"),
-        ({"arms": [{"name": "jobs"}]}, "'jobs' cannot name an arm"),
-        ({"arms": [{"name": "Results.md"}]}, "'results.md' cannot name an arm"),
         ({"arms": [{"name": "experiment.toml"}]}, "'experiment.toml' cannot name an arm"),
         ({"arms": [{"name": "a/b"}]}, "arm 'a/b': name"),
         ({"arms": [{"name": ".."}]}, "arm '..': name"),
@@ -165,16 +146,16 @@ def test_further_arms_come_last_and_change_nothing_else(tmp_path: Path) -> None:
         ({"fork": {"of": "none", "at": 5}}, "none is not a run"),
         ({"fork": {"at": 5}}, "fork.of is missing"),
         ({"fork": {"of": "mills/mild", "at": 0}}, "fork.at: "),
+        ({"fork": 0}, "fork: input should be a valid"),
+        ({"jobs": 0}, "jobs: input should be a valid"),
     ],
 )  # fmt: skip
 def test_a_wrong_file_is_one_clear_line(
     tmp_path: Path, changes: dict[str, Any], words: str
 ) -> None:
-    file = write(tmp_path, **changes)
-    with pytest.raises(InputError, match=words):
-        begin(file, tmp_path / "out")
+    done = here("experiment", write(tmp_path, **changes), "--out", tmp_path / "out")
+    complains(done, 2, str(tmp_path), *words.split(".*"))
     assert not (tmp_path / "out").exists()
-    complains(here("experiment", file, "--out", tmp_path / "out"), 2, str(file.parent))
 
 
 def test_a_wrong_request_is_one_clear_line(tmp_path: Path) -> None:
@@ -185,8 +166,8 @@ def test_a_wrong_request_is_one_clear_line(tmp_path: Path) -> None:
 
     assert "0 of 4 jobs done" in asked("--status").stdout
     assert not out.exists()
-    for alone in (["--jobs", "2"], ["--only", "mild"], ["--ray"]):
-        complains(asked("--job", "1", *alone), 2, f"leave out {alone[0]}")
+    several = "--jobs", 2, "--only", "mild", "--ray"
+    complains(asked("--job", 1, *several), 2, "leave out --jobs and --only and --ray")
     complains(asked("--job", "4"), 2, f"{out} has no job 4; the jobs are 0 to 3")
     complains(asked("--only", "mlid"), 2, "there is no arm 'mlid'; the arms are mild, harsh")
     complains(asked("--json"), 2, "--json needs --status")
@@ -197,29 +178,13 @@ def test_a_wrong_request_is_one_clear_line(tmp_path: Path) -> None:
     assert (tmp_path / "full" / "a").exists()
 
 
-@pytest.mark.slow
-def test_runs_whose_seeds_have_a_gap_are_no_arm_to_fork(tmp_path: Path) -> None:
-    """The worlds after the gap would go on with other seeds than they had."""
-    for seed in (0, 2, 5):
-        loop.start(config(MEADOW, seed=seed, seeds=2, stop={"ticks": 9}), tmp_path / f"h{seed}")
-    fork = {"of": str(tmp_path / "h*"), "at": 5}
-    names = ("task", "seed", "seeds", "replication", "saturation_ticks", "hazard", "brain", "jobs")
-    own = {"fork": fork, "arms": [{"name": "same"}], **dict.fromkeys(names)}
-    with pytest.raises(InputError, match="no world of seed 4, but one of 5; an arm has successive"):
-        read(write(tmp_path, **own), tmp_path / "out")
-    shutil.rmtree(tmp_path / "h5")
-    plan = read(write(tmp_path, **own), tmp_path / "out")
-    assert [(job.first, job.worlds, job.folder, job.source) for job in plan.jobs()] == [
-        (0, 2, "same/0-1", "../h0"),
-        (2, 2, "same/2-3", "../h2"),
-    ]
-    assert (plan.arms[0].config.seed, plan.arms[0].config.seeds) == (0, 4)
-
-
 def test_a_fork_of_runs_has_all_their_worlds_and_their_own_ancestors(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A run keeps its ancestors in its directory; the runs have different numbers of worlds."""
+    """A run keeps its ancestors in its directory; the runs have different numbers of worlds.
+
+    Worlds after a gap between the seeds would go on with other seeds than they had.
+    """
     worlds = {tmp_path / "a": (5, 2), tmp_path / "b": (7, 3)}
     ancestors = {"ancestors": ("a.safetensors", "b.safetensors")}
     configs = {
@@ -233,6 +198,9 @@ def test_a_fork_of_runs_has_all_their_worlds_and_their_own_ancestors(
     assert (settings["seed"], settings["seeds"]) == (5, 5)
     assert settings["ancestors"] == [str(tmp_path / "a" / f"{name}.safetensors") for name in "ab"]
     assert runs == [(tmp_path / "a", 2), (tmp_path / "b", 3)]
+    configs[tmp_path / "b"] = config(MEADOW, seed=8)
+    with pytest.raises(InputError, match="no world of seed 7, but one of 8; an arm has successive"):
+        _of_runs(tmp_path)
 
 
 def test_a_fork_has_the_jobs_and_settings_of_its_source(tmp_path: Path) -> None:
@@ -290,7 +258,7 @@ def test_a_fork_may_not_be_changed_added_or_removed(
         begin(write(tmp_path, "two", **kinds[then]), out)
 
 
-@pytest.mark.parametrize("names", [["one"], ["one", "two"], ["one", "two", "three"]])
+@pytest.mark.parametrize("names", [["one"], ["one", "two", "three"]])
 def test_experiments_do_not_fork_each_other_in_a_circle(names: list[str], tmp_path: Path) -> None:
     for name, other in zip(names, [*names[1:], names[0]], strict=True):
         (tmp_path / f"{name}.toml").write_text(
@@ -299,13 +267,6 @@ def test_experiments_do_not_fork_each_other_in_a_circle(names: list[str], tmp_pa
     done = here("experiment", tmp_path / "one.toml", "--out", tmp_path / "out")
     complains(done, 2, "one.toml is a fork of itself")
     assert not (tmp_path / "out").exists()
-
-
-@pytest.mark.parametrize("name", ["jobs", "fork"])
-def test_a_table_of_an_experiment_is_a_table(name: str, tmp_path: Path) -> None:
-    complains(
-        here("experiment", write(tmp_path, **{name: 0})), 2, f"{name}: input should be a valid"
-    )
 
 
 @pytest.mark.parametrize(

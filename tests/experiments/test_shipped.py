@@ -4,6 +4,7 @@ import csv
 import tomllib
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,18 +17,31 @@ from primordia.config import load
 from primordia.experiments.campaign import begin
 from primordia.experiments.file import read
 from primordia.experiments.job import live
-from primordia.experiments.late import last_deaths
-from primordia.experiments.results import COLUMNS
-from primordia.runs import loop
-from primordia.runs.opening import opened
 from primordia.settings.tables import merged
-from tests.worlds import MEADOW, config
 
 EXPERIMENTS = Path(__file__).parent.parent.parent / "experiments"
 FILES = sorted(EXPERIMENTS.glob("*/*.toml"))
 TRACED = {"acrobot", "poles"}
 """Experiments whose settings are checked by compiled code of seconds; `make slow` reads them."""
 TRIALS = sorted(EXPERIMENTS.glob("*/founders/*.toml"))
+
+
+@pytest.fixture(autouse=True)
+def _scripts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let tests import the scripts."""
+    monkeypatch.syspath_prepend(str(EXPERIMENTS))
+
+
+def written(file: Path, **values: Any) -> Path:
+    """Write an experiment's file into a new folder."""
+    file.parent.mkdir()
+    file.write_text(tomli_w.dumps({"question": "Do they?", **values}))
+    return file
+
+
+def rows_of(file: Path) -> list[dict[str, str]]:
+    """Return the rows of a CSV file, each by the names of its columns."""
+    return list(csv.DictReader(file.read_text().splitlines()))
 
 
 @pytest.fixture
@@ -69,7 +83,6 @@ def test_trials_measure_what_mutants_inherit(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Where all lives start alike, copies live as long as their parents; strangers do not."""
-    monkeypatch.syspath_prepend(str(EXPERIMENTS))
     script = import_module("founders")
     for name, value in {"FOUNDERS": 64, "PARENTS": 4, "MUTANTS": 8}.items():
         monkeypatch.setattr(script, name, value)
@@ -78,12 +91,10 @@ def test_trials_measure_what_mutants_inherit(
         {"name": "strangers", "mutation": {"founder_scale": 1.0, "scale": 1000.0}},
     ]
     shared = {"task": "CartPole-survival", "habitat": {"spread": 0.0}}
-    file = tmp_path / "founders" / "poles.toml"
-    file.parent.mkdir()
-    file.write_text(tomli_w.dumps({"question": "What is inherited?", **shared, "arms": arms}))
+    file = written(tmp_path / "founders" / "poles.toml", **shared, arms=arms)
     script.report(file)
     text = (tmp_path / "results" / "poles-founders.md").read_text()
-    assert text.startswith("# What is inherited?")
+    assert text.startswith("# Do they?")
     rows = [line.strip("| ").split(" | ") for line in text.splitlines() if line.startswith("| ")]
     shares = {row[0]: float(row[-1]) for row in rows[2:]}
     assert shares["copies"] == 1
@@ -98,10 +109,8 @@ def pong_experiment(tmp_path_factory: pytest.TempPathFactory) -> Path:
     root = tmp_path_factory.mktemp("ponged")
     shared = {"task": "Pong-survival", "cells": 4, "genesis": "fill", "habitat": {"workers": 0}}
     arms = [{"name": "heredity"}, {"name": "none", "inheritance": "founder"}]
-    file = root / "games" / "pong.toml"
-    file.parent.mkdir()
-    values = {"question": "Do they?", **shared, "stop": {"ticks": 300, "until": "none"}}
-    file.write_text(tomli_w.dumps({**values, "arms": arms}))
+    stop = {"ticks": 300, "until": "none"}
+    file = written(root / "games" / "pong.toml", **shared, stop=stop, arms=arms)
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(root)
         primordia.experiment(file)
@@ -111,7 +120,6 @@ def pong_experiment(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def ponged(pong_experiment: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Return the file of an experiment with Pong that has been run from the current folder."""
-    monkeypatch.syspath_prepend(str(EXPERIMENTS))
     monkeypatch.chdir(pong_experiment.parent.parent)
     return pong_experiment
 
@@ -125,12 +133,9 @@ def champion(file: Path) -> int:
     named = primordia.load(import_module("named").arms(file)[0]).organism(
         int(metadata["organisms"])
     )
-    begun = Path(f"from-{named.id}")
-    if not begun.exists():
-        alone = {"cells": 2, "habitat": {"workers": 0}, "stop": {"ticks": 1}}
-        primordia.run(metadata["task"], begun, ancestors=[str(kept)], **alone)
-    founder = primordia.load(begun).organism(0)
-    np.testing.assert_array_equal(founder.genome(), named.genome())
+    alone = {"cells": 2, "habitat": {"workers": 0}, "stop": {"ticks": 1}}
+    begun = primordia.run(metadata["task"], Path("begun"), ancestors=[str(kept)], **alone)
+    np.testing.assert_array_equal(begun.organism(0).genome(), named.genome())
     return named.id
 
 
@@ -146,7 +151,7 @@ def test_games_and_champions_are_reported(ponged: Path, monkeypatch: pytest.Monk
     reference = primordia.load(runs(ponged)[0])
     assert champion(ponged) == reference.oldest().id
     games.report(ponged)
-    rows = list(csv.DictReader((results / "pong-games.csv").read_text().splitlines()))
+    rows = rows_of(results / "pong-games.csv")
     assert list(dict.fromkeys(row["who"] for row in rows)) == [
         "heredity: champion", "heredity: all alive", "best founder", "founder",
         "none: champion", "none: all alive",
@@ -166,14 +171,13 @@ def test_games_and_champions_are_reported(ponged: Path, monkeypatch: pytest.Monk
 
 @pytest.mark.slow
 def test_effects_of_mutations_are_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.syspath_prepend(str(EXPERIMENTS))
     script = import_module("effects")
     values = {"RESULTS": tmp_path / "results", "SCALES": (1e-7, 30.0), "DIFFERS": (), "TICKS": 100}
     for name, value in values.items():
         monkeypatch.setattr(script, name, value)
     script.report("CartPole-survival")
     results = tmp_path / "results" / "cartpole-survival.csv"
-    rows = list(csv.DictReader(results.read_text().splitlines()))
+    rows = rows_of(results)
     assert {float(row["as_long"]) for row in rows if row["mutation"] == "scale 1e-07"} == {1.0}
     text = results.with_suffix(".md").read_text()
     assert "| scale 1e-07 | 1.000 (1.000 to 1.000) |" in text
@@ -181,11 +185,8 @@ def test_effects_of_mutations_are_reported(tmp_path: Path, monkeypatch: pytest.M
     assert f"| scale 30 | {np.mean(huge):.3f} (" in text
 
 
-def test_a_calibrated_mutation_is_held_against_scales_at_an_equal_share(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_calibrated_mutation_is_held_against_scales_at_an_equal_share() -> None:
     """Two scales leave 0 and 0.8 as they are, and improve 0.1 and 0.5: at 0.4 a scale improves 0.3."""
-    monkeypatch.syspath_prepend(str(EXPERIMENTS))
     script = import_module("effects")
     mutations = ["as set", "scale 0.1", "scale 0.01", "differs 0.02", "differs 0.1"]
     shares = {
@@ -195,21 +196,6 @@ def test_a_calibrated_mutation_is_held_against_scales_at_an_equal_share(
     same, worse = (script.against_scales(shares, mutations, place) for place in (3, 4))
     assert same in {"+0.000 (+0.000 to +0.000)", "-0.000 (-0.000 to -0.000)"}
     assert worse == "-0.100 (-0.100 to -0.100)"
-
-
-@pytest.mark.slow
-def test_the_csv_holds_the_outcomes_of_each_world(ponged: Path) -> None:
-    arms = import_module("named").arms(ponged)
-    compared = primordia.compare(*arms)
-    rows = list(csv.DictReader(Path("runs/pong/results.csv").read_text().splitlines()))
-    for row, arm in zip(rows, compared.arms, strict=True):
-        assert row["arm"] == arm.name
-        for outcome, column in COLUMNS.items():
-            measured = arm.measured[outcome]
-            assert (column in row) == (outcome in compared.outcomes)
-            if column in row and measured.known[0]:
-                assert float(row[column]) == pytest.approx(measured.value[0], abs=0.006)
-    assert float(rows[0]["longest_life"]) == primordia.load(arms[0]).lives().lifespan.max()
 
 
 @pytest.mark.slow
@@ -226,7 +212,7 @@ def test_shadows_are_reported(ponged: Path) -> None:
         assert cells[0] == shadow.name
         assert int(cells[3]) == len(shadow.world)
         assert [int(cell) for cell in cells[8:10]] == list(shadow.longer)
-    rows = list(csv.DictReader((results / "pong-shadow.csv").read_text().splitlines()))
+    rows = rows_of(results / "pong-shadow.csv")
     means = [round(float(mean), 2) for shadow in found for mean in shadow.means[0]]
     assert [float(row["mean_life"]) for row in rows] == means
 
@@ -235,7 +221,6 @@ def test_shadows_are_reported(ponged: Path) -> None:
 def test_the_share_of_starts_that_a_world_masters_is_counted(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.syspath_prepend(str(EXPERIMENTS))
     monkeypatch.chdir(tmp_path)
     starts = import_module("starts")
     monkeypatch.setattr(starts, "TICKS", 60)
@@ -244,16 +229,13 @@ def test_the_share_of_starts_that_a_world_masters_is_counted(
     monkeypatch.setattr(starts, "GAMES", games)
     arms = [{"name": "with"}, {"name": "none", "inheritance": "founder"}]
     shared = {"task": "CartPole-survival", "cells": 8, "seeds": 2, "seed": 3}
-    values = {"question": "Any?", **shared, "stop": {"ticks": 1500, "until": "none"}, "arms": arms}
-    (file := tmp_path / "poles" / "any.toml").parent.mkdir()
-    file.write_text(tomli_w.dumps(values))
+    stop = {"ticks": 1500, "until": "none"}
+    file = written(tmp_path / "poles" / "any.toml", **shared, stop=stop, arms=arms)
     chosen = begin(file)
     for job in chosen.jobs:  # in this process, which keeps its compiled code
         live(chosen.plan, job, chosen.path)
     starts.report(file)
-    rows = list(
-        csv.DictReader((tmp_path / "poles/results/any-starts.csv").read_text().splitlines())
-    )
+    rows = rows_of(tmp_path / "poles/results/any-starts.csv")
     run = primordia.load("runs/any/with")
     lives = run.lives()
     for world, row in enumerate(row for row in rows if row["who"] == "with: all alive"):
@@ -271,9 +253,8 @@ def test_the_share_of_starts_that_a_world_masters_is_counted(
     assert "with: champion | 2 |" in (tmp_path / "poles/results/any-starts.md").read_text()
 
 
-def test_the_way_of_an_arm_to_its_targets_is_measured(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_way_of_an_arm_to_its_targets_is_measured() -> None:
     """A tip moves between two places: first straight, then three times as far as needed."""
-    monkeypatch.syspath_prepend(str(EXPERIMENTS))
     reaching = import_module("reaching")
     straight, detour = np.linspace(0, 0.1, 11), np.tile([0.0, 0.1], 2)
     tip = np.concatenate([straight, straight[-2::-1], detour[1:]])
@@ -296,48 +277,25 @@ def test_robots_in_fresh_games_are_reported(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip("mujoco")
-    monkeypatch.syspath_prepend(str(EXPERIMENTS))
     monkeypatch.chdir(tmp_path)
-    file = tmp_path / "robots" / "arms.toml"
-    file.parent.mkdir()
-    values = {"question": "Do they?", "task": "Reacher-forager", "cells": 4, "genesis": "fill"}
-    values |= {"stop": {"ticks": 150}, "arms": [{"name": "heredity"}]}
-    file.write_text(tomli_w.dumps(values))
+    shared = {"task": "Reacher-forager", "cells": 4, "genesis": "fill", "stop": {"ticks": 150}}
+    file = written(tmp_path / "robots" / "arms.toml", **shared, arms=[{"name": "heredity"}])
     primordia.experiment(file)
     games, reaching = import_module("games"), import_module("reaching")
     monkeypatch.setattr(games, "TICKS", 120)
     monkeypatch.setattr(games, "GAMES", 2)
     games.report(file)
     results = file.parent / "results"
-    rows = list(csv.DictReader((results / "arms-games.csv").read_text().splitlines()))
+    rows = rows_of(results / "arms-games.csv")
     ways = ["fresh starts", "senses frozen", "blindly"]
     chosen = "heredity: champion", "best founder"
     assert [row["way"] for row in rows if row["who"] in chosen] == ways * 2
     assert {row["length"] for row in rows} == {"50.0"}
     assert all(float(row["score"]) < 0 for row in rows)
     reaching.report([file])
-    rows = list(csv.DictReader((results / "reaching.csv").read_text().splitlines()))
+    rows = rows_of(results / "reaching.csv")
     assert {row["who"] for row in rows} == {"arms, heredity", "arms, heredity: founders"}
     assert (results / "reaching.md").read_text().count("| arms") == 2
-
-
-@pytest.mark.slow
-def test_deaths_of_the_last_quarter_are_counted(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Deaths are counted one by one, up to the tick that all runs have reached."""
-    monkeypatch.syspath_prepend(str(EXPERIMENTS))
-    settings = {**MEADOW, "brain": {"hidden": 1}, "seeds": 2, "hazard": 0.02, "replication": 0.2}
-    for name, ticks in (("long", 480), ("short", 400)):
-        loop.start(config({**settings, "stop": {"ticks": ticks}}), tmp_path / name)
-    compared = primordia.compare(tmp_path / "long", tmp_path / "short")
-    worlds = last_deaths(opened([tmp_path / "long"]), compared)
-    lives = primordia.load(tmp_path / "long").lives()
-    for world, counted in enumerate(worlds):
-        here = zip(lives.world, lives.born, lives.ended, lives.died, strict=True)
-        spans = [e - b for w, b, e, died in here if w == world and died and 300 < e <= 400]
-        assert counted == {"late_deaths": len(spans), "late_lifespan": float(np.median(spans))}
-        assert spans
 
 
 @pytest.mark.slow

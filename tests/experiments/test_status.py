@@ -14,7 +14,7 @@ from primordia.experiments.plan import ArmPlan, Job, Plan, recorded
 from primordia.experiments.status import ArmStatus, _interval, status
 
 
-@pytest.mark.parametrize("worlds", [5, 6, 9, 20, 100])
+@pytest.mark.parametrize("worlds", [5, 9, 100])
 def test_the_interval_of_a_median_holds_it_as_often_as_promised(worlds: int) -> None:
     """Counted over samples of a law whose median is known."""
     draws = np.random.default_rng(worlds).exponential(size=(4000, worlds))
@@ -25,7 +25,8 @@ def test_the_interval_of_a_median_holds_it_as_often_as_promised(worlds: int) -> 
 
 def test_the_bounds_of_the_interval_are_equally_far_from_both_ends() -> None:
     """Of 20, 50 and 100 worlds, n / 2 - 0.98 sqrt(n) = 5.6, 18.1 and 40.2 lie outside."""
-    for worlds, outside in ((20, 5), (50, 18), (100, 40)):
+    assert _interval(np.arange(4.0)) is None
+    for worlds, outside in ((5, 0), (20, 5), (50, 18), (100, 40)):
         lives = np.random.default_rng(worlds).permutation(worlds).astype(float)
         assert _interval(lives) == (outside, worlds - 1 - outside)
 
@@ -65,14 +66,12 @@ def test_each_arm_has_the_worlds_of_its_own_jobs() -> None:
 
 ARM = {"name": "a", "settings": {"seeds": 2}}
 DAMAGED: dict[str, list[dict[str, Any]]] = {
-    "'a' cannot name an arm, or names two": [ARM, ARM],
     "'a' cannot name an arm": [ARM, {**ARM, "name": "b"}, {**ARM, "name": "A"}],
     "'jobs' cannot name an arm": [{**ARM, "name": "jobs"}],
     "'results.csv' cannot name an arm": [ARM, {**ARM, "name": "Results.csv"}],
     "seeds of arm a must be a whole number": [{**ARM, "settings": {}}],
     "from 1 to 65536": [{**ARM, "settings": {"seeds": 2**16 + 1}}],
-    "must be a whole number from 1 to": [{**ARM, "settings": {"seeds": 0}}],
-    "a whole number from 1": [{**ARM, "settings": {"seeds": "two"}}],
+    "must be a whole number from 1": [{**ARM, "settings": {"seeds": 0}}],
     "seeds of arm b must be a whole number": [ARM, {"name": "b", "settings": {"seeds": True}}],
     "jobs are more than 100,000": [
         {"name": name, "settings": {"seeds": 2**16}} for name in ("a", "b")
@@ -88,10 +87,10 @@ def forked(seeds: int, *worlds: int) -> dict[str, Any]:
 
 
 def test_a_fork_has_a_job_for_each_run_and_all_their_worlds(tmp_path: Path) -> None:
-    """Two arms of 60,000 worlds have 12 jobs, though jobs of one world would be too many."""
+    """Two arms of the most worlds have 8 jobs, though jobs of one world would be too many."""
     file = tmp_path / "experiment.toml"
-    file.write_text(tomli_w.dumps(forked(60_000, *[10_000] * 6)))
-    assert len(recorded(tmp_path).jobs()) == 12
+    file.write_text(tomli_w.dumps(forked(2**16, *[2**14] * 4)))
+    assert len(recorded(tmp_path).jobs()) == 8
     for arm, seeds in (("a", 7), ("a", 9), ("b", 9)):
         plan = forked(8 if arm == "b" else seeds, 3, 5)
         plan["arms"][-1]["settings"] = {"seeds": seeds}
@@ -99,12 +98,6 @@ def test_a_fork_has_a_job_for_each_run_and_all_their_worlds(tmp_path: Path) -> N
         says = f"arm {arm} has {seeds} worlds, and the runs that it forks have 8"
         with pytest.raises(InputError, match=says):
             recorded(tmp_path)
-
-
-def test_an_arm_may_have_65536_worlds(tmp_path: Path) -> None:
-    plan = {"question": "?", "worlds": 1, "arms": [{**ARM, "settings": {"seeds": 2**16}}]}
-    (tmp_path / "experiment.toml").write_text(tomli_w.dumps(plan))
-    assert recorded(tmp_path).arms[0].settings["seeds"] == 2**16
 
 
 @pytest.mark.parametrize("fault", DAMAGED)
@@ -133,8 +126,3 @@ def test_a_forged_entry_counts_as_none(forged: dict[str, Any], tmp_path: Path) -
     (tmp_path / "jobs").mkdir()
     (tmp_path / "jobs" / "000000.json").write_text(json.dumps(entry))
     assert Ledger(tmp_path, [job]).entry(job) == Entry(job=0, arm="a")
-
-
-def test_few_worlds_have_no_interval() -> None:
-    assert _interval(np.arange(4.0)) is None
-    assert _interval(np.arange(5.0)) == (0.0, 4.0)

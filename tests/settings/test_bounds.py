@@ -4,8 +4,7 @@ from typing import Any
 
 import pytest
 
-from primordia.brains.contract import KNOWN as BRAINS
-from primordia.config import load, parsed
+from primordia.config import parsed
 from primordia.errors import InputError
 from primordia.fitting import check
 from primordia.habitats.contract import Compound, Continuous, Discrete
@@ -90,31 +89,17 @@ def test_one_continuous_part_of_an_action_is_enough_for_a_gaussian_motor() -> No
         config(MEADOW, motor={"kind": "gaussian"})
 
 
-def rates_of_a_law(**changes: Any) -> dict[str, float]:
-    return dict(law_of(MILL, seasons=[], **changes).beginning)
-
-
 def test_a_law_begins_with_the_rates_of_its_settings() -> None:
     """Without a metabolism, its rates have their defaults."""
-    own = {"store": 7.0, "drain": 0.5, "gain": 3.0}
-    rates = rates_of_a_law(hazard=0.25, replication=0.125, metabolism=own)
-    assert (rates["hazard"], rates["replication"]) == (0.25, 0.125)
-    assert {name: rates[f"metabolism.{name}"] for name in ("drain", "gain")} == {
-        "drain": 0.5,
-        "gain": 3.0,
-    }
-    assert rates_of_a_law(metabolism=None)["metabolism.drain"] == 1.0
+    own = {"hazard": 0.25, "metabolism": {"store": 7.0, "drain": 0.5, "gain": 3.0}}
+    rates = dict(law_of(MILL, seasons=[], **own).beginning)
+    assert [rates[f"metabolism.{name}"] for name in ("drain", "gain")] == [0.5, 3.0]
+    assert rates["hazard"] == 0.25
+    without = dict(law_of(MILL, seasons=[], metabolism=None).beginning)
+    assert without["metabolism.drain"] == 1.0
 
 
 def test_a_season_of_metabolism_needs_a_metabolism() -> None:
     season = {"kind": "schedule", "setting": "metabolism.gain", "at": 2, "value": 0.5}
     with pytest.raises(InputError, match=r"seasons: metabolism.gain needs a metabolism; remove"):
         config(MILL, metabolism=None, seasons=[season])
-
-
-@pytest.mark.parametrize("kind", BRAINS)
-def test_the_defaults_of_a_part_are_added_and_its_own_settings_kept(kind: str) -> None:
-    name, value = ("decay", 0.5) if kind == "plastic" else ("biases", True)
-    made = load("CartPole-survival", {"brain": {"kind": kind, name: value}})
-    assert (made.brain["kind"], made.brain[name]) == (kind, value)
-    assert made.mutation["kind"] == "gaussian"

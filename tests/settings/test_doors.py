@@ -1,6 +1,7 @@
 """Doors (`gym:`, `gymnax:`) before names of environments, and the text of a task file."""
 
 import tomllib
+from unittest.mock import call, patch
 
 import pytest
 
@@ -28,32 +29,24 @@ def test_a_name_without_a_door_gets_that_of_gymnasium(name: str, full: str, behi
     ("env", "asked"),
     [
         ("gymnax:Catch", ("primordia.habitats.gymnax.task:task", "Catch")),
-        ("Pond-v0", ("primordia.habitats.gymnasium.task:task", "Pond-v0")),
         ("my.ponds:Pond-v0", ("primordia.habitats.gymnasium.task:task", "my.ponds:Pond-v0")),
     ],
 )
 def test_a_task_file_has_the_facts_then_the_faults_then_the_settings(
-    env: str, asked: tuple[str, str], monkeypatch: pytest.MonkeyPatch
+    env: str, asked: tuple[str, str]
 ) -> None:
     table = {"task": "pond", "habitat": {"name": "gymnasium", "fatal": "obs[0] > 7"}}
     facts = ["Seven senses.", " ".join(["word"] * 60)]
     task = doors.Task(table, facts, ["it sinks", "it leaks"])
-    calls = []
-
-    def load(what: str, path: str, known: dict[str, str]) -> object:
-        def answer(name: str) -> object:
-            calls.append((what, path, name))
-            return task
-
-        return answer
-
-    monkeypatch.setattr(parts, "load", load)
-    text = doors.text(env)
-    assert calls == [("door", *asked)]
+    with patch.object(parts, "load") as load:
+        load.return_value.return_value = task
+        text = doors.text(env)
+    path, name = asked
+    assert load.mock_calls == [call("door", path, {}), call()(name)]
     assert tomllib.loads(text) == table
     comments, _, _ = text.partition("\n\n")
     lines = comments.splitlines()
-    assert max(map(len, lines)) <= doors.WIDTH == 100
+    assert max(map(len, lines)) <= doors.WIDTH
     unwrapped = comments.replace("\n#   ", " ").splitlines()
     assert unwrapped[:5] == [
         f"# A task in {env}: `primordia run FILE` runs it. Change any setting.",

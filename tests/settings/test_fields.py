@@ -45,24 +45,18 @@ def message_of(
     ("values", "says"),
     [
         ({}, "size is missing"),
-        ({"inner": {"depth": "x"}}, "size is missing (and 1 more)"),
         ({"shape": 1, "inner": {"depth": "x", "width": "y"}}, "size is missing (and 3 more)"),
         ({"size": 0}, "size: input should be greater than or equal to 1, not 0"),
         (
             {"size": 1, "inner": {"depth": "x"}},
             "inner.depth: input should be a valid number, not 'x'",
         ),
-        (
-            {"size": 0, "slope": 0.25},
-            "size: input should be greater than or equal to 1, not 0 (and 1 more)",
-        ),
         ({"size": 1, "slope": 0.25}, "slope: is too steep"),
-        ({"size": 1, "slope": 0.25, "siez": 1}, "slope: is too steep (and 1 more)"),
         ({"size": 1, "siez": 1}, "there is no setting 'siez'; did you mean 'size'?"),
         ({"size": 1, "depht": 1}, "there is no setting 'depht'; did you mean 'inner.depth'?"),
         ({"size": 1, "qqqq": 1, "zzzz": 2}, "there is no setting 'qqqq' (and 1 more)"),
     ],
-    ids=range(11),
+    ids=range(8),
 )
 def test_a_message_has_the_first_fault_and_the_number_of_the_others(
     values: dict[str, Any], says: str
@@ -74,11 +68,9 @@ def test_a_message_has_the_first_fault_and_the_number_of_the_others(
     ("values", "says"),
     [
         ({}, "pond.size is missing"),
-        ({"size": 1, "slope": 0.25}, "pond.slope: is too steep"),
-        ({"size": 0}, "pond.size: input should be greater than or equal to 1, not 0"),
         ({"size": 1, "siez": 1}, "there is no setting 'pond.siez'; did you mean 'pond.size'?"),
     ],
-    ids=["missing", "ours", "too small", "unknown"],
+    ids=["missing", "unknown"],
 )
 def test_a_message_about_a_table_has_the_name_of_the_table(
     values: dict[str, Any], says: str
@@ -99,13 +91,8 @@ def test_all_settings_but_those_of_a_fork_are_suggested() -> None:
 
 
 def test_fields_have_dotted_names_and_some_are_rates() -> None:
-    assert list(setting_fields(Pool, "a.")) == [
-        "a.size",
-        "a.shape",
-        "a.inner.depth",
-        "a.inner.width",
-        "a.slope",
-    ]
+    names = "a.size", "a.shape", "a.inner.depth", "a.inner.width", "a.slope"
+    assert tuple(setting_fields(Pool, "a.")) == names
     assert setting_fields(int) == {}
     assert rates_of(Pool(size=1, slope=0.125), "a.") == {"a.slope": 0.125}
     assert rates_of(Inner(depth=0.0)) == {"depth": 0.0}

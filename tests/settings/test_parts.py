@@ -3,12 +3,12 @@
 import tomllib
 from pathlib import Path
 from typing import Any, cast
+from unittest.mock import MagicMock, call
 
 import pytest
 import tomli_w
 
-from primordia.brains.contract import find
-from primordia.config import load, parsed, validated
+from primordia.config import load, parsed
 from primordia.errors import InputError
 from primordia.settings.making import make
 from primordia.settings.tables import PARTS, merged
@@ -23,13 +23,8 @@ def test_a_brain_has_its_own_settings_with_defaults_filled_in() -> None:
     assert config(MEADOW).brain == {"kind": "recurrent", "hidden": 32, **common}
     assert config(MEADOW, brain={"kind": "linear"}).brain == {"kind": "linear", **common}
     other = config(MEADOW, brain={"kind": "tests.toys:Sliding", "width": 1})
-    assert other.brain == {
-        "kind": "tests.toys:Sliding",
-        "efference": False,
-        "interoception": False,
-        "width": 1,
-        "channels": 3,
-    }
+    own = {"kind": "tests.toys:Sliding", "width": 1, "channels": 3}
+    assert other.brain == {**own, "efference": False, "interoception": False}
     assert tomllib.loads(other.to_toml())["brain"] == other.brain
 
 
@@ -54,23 +49,10 @@ def test_an_error_of_a_part_is_one_line_with_the_name_of_its_table(error: Except
     ("what", "kind"), [("habitat", ""), ("brain", "recurrent"), ("mutation", "gaussian")]
 )
 def test_a_table_without_a_name_describes_the_default_part(what: str, kind: str) -> None:
-    asked: list[object] = []
-
-    def find_part(name: object) -> Any:
-        asked.append(name)
-        return dict
-
-    assert make(what, {"depth": 0}, find_part) == {"depth": 0}
-    assert make(what, {PARTS[what]: "own", "depth": 0}, find_part) == {"depth": 0}
-    assert asked == [kind, "own"]
-
-
-def test_settings_of_an_older_version_are_read() -> None:
-    """The older version had a kind and a number of neurons."""
-    for kind in ("recurrent", "feed-forward"):
-        old = {**MEADOW, "brain": {"kind": kind, "hidden": 5}}
-        made = validated(old, source="test").brain
-        assert made == {**old["brain"], "efference": False, "interoception": False, "biases": False}
+    find = MagicMock(return_value=dict)
+    assert make(what, {"depth": 0}, find) == {"depth": 0}
+    assert make(what, {PARTS[what]: "own", "depth": 0}, find) == {"depth": 0}
+    assert find.mock_calls == [call(kind), call("own")]
 
 
 def test_settings_are_read_without_the_code_of_the_brain() -> None:
@@ -82,21 +64,15 @@ def test_a_part_does_not_take_settings_of_the_part_that_it_replaces() -> None:
     made = load(TASK, {"brain": {"kind": "linear"}}).brain
     assert made == {"kind": "linear", "efference": False, "interoception": False, "biases": False}
     base = {"brain": {"kind": "gated", "hidden": 4}, "motor": {"kind": "direct", "sd": 0.5}}
-    assert merged(base, {"brain": {"kind": "gated", "biases": True}})["brain"] == {
-        "kind": "gated",
-        "hidden": 4,
-        "biases": True,
-    }
+    same = {"kind": "gated", "biases": True}
+    assert merged(base, {"brain": same})["brain"] == {**same, "hidden": 4}
     assert merged(base, {"brain": {"kind": "linear"}})["brain"] == {"kind": "linear"}
     assert merged(base, {"motor": {"kind": "gaussian"}})["motor"] == {"kind": "gaussian", "sd": 0.5}
-    mutation = {"scale": 0.5}  # of the Gaussian, which a table describes that names no kind
-    assert merged({"mutation": mutation}, {"mutation": {"kind": "my:Own"}})["mutation"] == {
-        "kind": "my:Own"
-    }
-    assert merged({"mutation": mutation}, {"mutation": {"kind": "gaussian"}})["mutation"] == {
-        "kind": "gaussian",
-        "scale": 0.5,
-    }
+    unnamed = {"mutation": {"scale": 0.5}}  # of the default mutation, the Gaussian
+    own = {"mutation": {"kind": "my:Own"}}
+    assert merged(unnamed, own) == own
+    same = {"kind": "gaussian"}
+    assert merged(unnamed, {"mutation": same})["mutation"] == {**same, "scale": 0.5}
     hidden = load("CartPole-survival-hidden", {"habitat": {"name": "tests.toys:Meadow"}})
     assert hidden.habitat == {"name": "tests.toys:Meadow"}
 
@@ -120,14 +96,12 @@ def test_blocks_of_any_name_are_settings() -> None:
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        (["--brain.kind", "clever"], "brain.kind: no brain named 'clever'; known: recurrent,"),
         (["--brain.kind", "gated", "--brain.hiden", "3"], "did you mean 'brain.hidden'?"),
         (["--brain.kind", "linear", "--brain.hidden", "3"], "no setting 'brain.hidden'"),
         (
             ["--brain.hidden", "0"],
             "brain.hidden: input should be greater than or equal to 1, not 0",
         ),
-        (["--brain", "pond"], "brain: input should be a valid dictionary, not 'pond'"),
         (["--mutation.blocks.input_bias.scale", "1"], "this brain has no block 'input_bias'"),
     ],
 )
@@ -135,43 +109,13 @@ def test_wrong_settings_of_a_part_are_errors_that_say_why(words: list[str], says
     complains(here("run", TASK, *words), 2, f"{TASK}: ", says)
 
 
-def helped(*words: object) -> str:
-    done = here("run", *words, "--help")
-    assert (done.returncode, done.stderr) == (0, "")
-    return " ".join(done.stdout.split())
-
-
-def test_help_shows_the_settings_of_the_brain_that_a_task_names(tmp_path: Path) -> None:
-    file = tmp_path / "mine.toml"
-    cases: list[tuple[dict[str, Any], set[str], set[str]]] = [
-        ({"kind": "linear"}, {"biases"}, {"hidden"}),
-        ({"kind": "tests.toys:Sliding", "width": 7}, {"width", "channels"}, {"hidden", "biases"}),
-        ({}, {"hidden", "biases"}, {"width"}),
-        ({"kind": "no.such:Brain"}, set(), {"hidden", "biases"}),
-    ]
-    for table, shown, others in cases:
-        text = helped(_written(file, table))
-        assert all(f"--brain.{name} " in text for name in {"kind", *shown}), table
-        assert not any(f"--brain.{name} " in text for name in others), table
-        assert f'or module:Class ["{table.get("kind", "recurrent")}"]' in text
-        assert ("--brain.width [7]" in text) == ("width" in table)
-
-
-def _written(file: Path, brain: dict[str, Any]) -> Path:
-    file.write_text(tomli_w.dumps({"task": "own", "habitat": {"name": "cartpole"}, "brain": brain}))
-    return file
-
-
-def test_help_without_a_task_shows_the_settings_of_the_default_brain() -> None:
-    text = helped()
-    for name in find("recurrent").model_fields:
-        assert f"--brain.{name} " in text
-    assert ', or module:Class ["recurrent"]' in text
-
-
-def test_a_part_that_is_no_table_leaves_help_as_it_is(tmp_path: Path) -> None:
-    file = tmp_path / "mine.toml"
-    file.write_text('task = "own"\nhabitat = "pond"\nbrain = 5\n')
-    assert "--brain.hidden " in helped(file)
-    with pytest.raises(InputError, match="habitat: input should be a valid dictionary"):
-        load(str(file))
+def test_help_shows_the_settings_of_the_brain_that_a_file_names(tmp_path: Path) -> None:
+    brain = {"kind": "tests.toys:Sliding", "width": 7}
+    (file := tmp_path / "mine.toml").write_text(
+        tomli_w.dumps({"task": "own", "habitat": {"name": "cartpole"}, "brain": brain})
+    )
+    text = " ".join(here("run", file, "--help").stdout.split())
+    assert 'or module:Class ["tests.toys:Sliding"]' in text
+    assert "--brain.width [7]" in text
+    assert "--brain.channels " in text
+    assert "--brain.hidden " not in text

@@ -31,13 +31,7 @@ def test_only_a_value_of_the_same_type_is_replaced() -> None:
         "c": [None, "nones"],
         "none": 0,
     }
-    found = replaced([1, 1.0, True, "1"], 1, 7)
-    assert [(type(each), each) for each in found] == [
-        (int, 7),
-        (float, 1.0),
-        (bool, True),
-        (str, "1"),
-    ]
+    assert list(map(repr, replaced([1, 1.0, True, "1"], 1, 7))) == ["7", "1.0", "True", "'1'"]
 
 
 def test_a_flat_table_has_dotted_names_at_any_depth() -> None:
@@ -47,9 +41,9 @@ def test_a_flat_table_has_dotted_names_at_any_depth() -> None:
 
 def test_a_table_takes_the_place_of_a_value_and_a_value_that_of_a_table() -> None:
     assert merged({"a": {"b": 1}, "c": 2}, {"a": None, "c": {"d": 3}}) == {"a": None, "c": {"d": 3}}
-    assert merged({"a": {"b": {"c": 1, "d": 2}}}, {"a": {"b": {"d": 4}}}) == {
-        "a": {"b": {"c": 1, "d": 4}}
-    }
+    base = {"a": {"b": {"c": 1, "d": 2}}}
+    assert merged(base, {"a": {"b": {"d": 4}}}) == {"a": {"b": {"c": 1, "d": 4}}}
+    assert base == {"a": {"b": {"c": 1, "d": 2}}}, "the arguments are unchanged"
 
 
 def test_the_code_of_a_part_is_in_its_name_kind_env_food_and_imports() -> None:
@@ -70,15 +64,9 @@ def test_the_code_of_a_part_is_in_its_name_kind_env_food_and_imports() -> None:
 
 
 def test_a_run_names_the_modules_of_all_its_parts() -> None:
-    made = parsed(
-        {
-            **MEADOW,
-            "habitat": {"name": "pond:Pond", "imports": ["hills"]},
-            "brain": {"kind": "recurrent"},
-            "mutation": {"kind": "pond.deep:Change"},
-        },
-        source="test",
-    )
+    habitat = {"name": "pond:Pond", "imports": ["hills"]}
+    other = {"brain": {"kind": "recurrent"}, "mutation": {"kind": "pond.deep:Change"}}
+    made = parsed({**MEADOW, "habitat": habitat, **other}, source="test")
     assert made.own_modules == ["pond", "hills", "pond.deep"]
 
 
@@ -86,7 +74,7 @@ def test_paths_in_a_file_begin_at_its_folder(tmp_path: Path) -> None:
     folder = tmp_path / "deep"
     folder.mkdir()
     (folder / "course.png").write_bytes(b"")
-    values = {
+    values: dict[str, Any] = {
         "ancestors": ["a.safetensors", "/b.safetensors"],
         "habitat": {"file": "course.png", "profile": "course.png", "inner": {"file": "course.png"},
                     "env": {"file": "missing.png"}},
@@ -95,12 +83,7 @@ def test_paths_in_a_file_begin_at_its_folder(tmp_path: Path) -> None:
     found = relative_to(folder, values)
     full = str(folder / "course.png")
     assert found["ancestors"] == [str(folder / "a.safetensors"), "/b.safetensors"]
-    assert found["habitat"] == {
-        "file": full,
-        "profile": "course.png",
-        "inner": {"file": full},
-        "env": {"file": "missing.png"},
-    }
+    assert found["habitat"] == {**values["habitat"], "file": full, "inner": {"file": full}}
     assert found["brain"] == values["brain"]
     for odd in ({"habitat": 5}, {"ancestors": "a"}):
         assert relative_to(folder, odd) == odd
@@ -127,20 +110,14 @@ def test_a_file_of_any_name_is_a_task_and_the_tasks_are_in_order(tmp_path: Path)
     assert values_of(str(file))["task"] == "CartPole-survivl", "a complete task may have any name"
     names = [*tasks()]
     assert names == sorted(names)
-    for near, says in (
-        ("Pong-survivl", "; did you mean 'Pong-survival'"),
-        ("qqqq", "; give a name"),
-    ):
-        with pytest.raises(InputError, match=f"^there is no task '{near}'{says}"):
-            values_of(near)
+    with pytest.raises(InputError, match=r"^there is no task 'qqqq'; give a name"):
+        values_of("qqqq")
 
 
 def test_a_fault_in_a_file_names_the_file_and_the_setting(tmp_path: Path) -> None:
     (file := tmp_path / "mine.toml").write_text("[a]\nb = [0, 1e39]\n")
     with pytest.raises(InputError, match=rf"^{file}: a.b.1: 1e\+39 does not fit into float32$"):
         from_toml(file)
-    with pytest.raises(InputError, match=rf"^{tmp_path}/no.toml cannot be read: No such file"):
-        from_toml(tmp_path / "no.toml")
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,6 @@
 from pathlib import Path
 from typing import Any
 
-import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -46,51 +45,17 @@ def test_the_line_of_a_fault_is_the_last_one_in_the_file_of_the_part(pond: Any) 
     assert str(error.value).endswith("base 10: 'x'"), "no line of the part is involved"
 
 
-@pytest.mark.parametrize(
-    ("error", "says"),
-    [
-        (ValueError("first\nsecond"), "ValueError: first"),
-        (ValueError(), "ValueError"),
-        (SystemExit(3), "SystemExit: 3"),
-    ],
-    ids=["two lines", "no message", "exit"],
-)
-def test_a_fault_is_reported_with_the_first_line_of_its_message(
-    error: BaseException, says: str, pond: Any
-) -> None:
-    def fail() -> None:
-        raise error
-
-    with pytest.raises(InputError) as raised:
-        Tracing("brain", pond).called("think", fail)
-    assert str(raised.value) == f"brain: Pond fails in think: {says}"
-
-
-def test_an_error_for_the_user_is_passed_on_and_results_are_returned(pond: Any) -> None:
+def test_an_error_for_the_user_is_passed_on(pond: Any) -> None:
     def refuse() -> None:
         raise InputError("said already")
 
-    tracing = Tracing("brain", pond)
     with pytest.raises(InputError, match=r"^said already$"):
-        tracing.called("blocks", refuse)
-    assert tracing.called("blocks", lambda a, b: a - b, 7, 2) == 5
-    shape = jax.ShapeDtypeStruct((3, 2), jnp.float32)
-    traced = tracing.traced("step", lambda x: (x.T, x > 0), shape)
-    assert [(each.shape, each.dtype.name) for each in traced] == [
-        ((2, 3), "float32"),
-        ((3, 2), "bool"),
-    ]
+        Tracing("brain", pond).called("blocks", refuse)
 
 
 @pytest.mark.parametrize(
     ("found", "given"),
-    [
-        (np.zeros((2, 3), np.float64), "float64 (2, 3)"),
-        (np.zeros((3, 2), np.float32), "float32 (3, 2)"),
-        (np.zeros(2, np.float32), "float32 (2,)"),
-        ([1.0], "[1.0]"),
-        (None, "None"),
-    ],
+    [(np.zeros((2, 3), np.float64), "float64 (2, 3)"), ([1.0], "[1.0]")],
 )
 def test_a_result_of_another_shape_or_dtype_is_named(found: Any, given: str, pond: Any) -> None:
     tracing = Tracing("mutation", pond)

@@ -9,22 +9,19 @@ import click
 
 from primordia import interrupts, own_code
 from primordia.cli import (
-    bundle,
+    assays,
     descent,
     doctor,
     environments,
     evaluate,
     evolve,
     experiment,
-    film,
     inspect,
     page,
-    phylogeny,
     relive,
     shadow,
-    track,
+    share,
 )
-from primordia.cli.assays import group as assays
 from primordia.cli.cache import prepare_jax
 from primordia.cli.streams import flush, report
 from primordia.errors import InputError, Trouble
@@ -32,10 +29,10 @@ from primordia.errors import InputError, Trouble
 GROUPS: dict[str, tuple[click.Command, ...]] = {
     "Evolve": (evolve.run, evolve.resume, evolve.fork, experiment.experiment, inspect.tasks,
                environments.new, environments.check),
-    "Look": (inspect.info, inspect.plot, page.report, page.watch, inspect.replay, film.film),
+    "Look": (inspect.info, inspect.plot, page.report, page.watch, inspect.replay, inspect.film),
     "Compare": (inspect.compare, evaluate.evaluate, shadow.shadow, assays.assay),
-    "Descent": (descent.ancestors, descent.lineages, phylogeny.phylogeny),
-    "Share": (bundle.bundle, bundle.unbundle, inspect.export, inspect.import_, track.track),
+    "Descent": (descent.ancestors, descent.lineages, descent.phylogeny),
+    "Share": (share.bundle, share.unbundle, share.export, share.import_, share.track),
     "Trust": (inspect.verify, relive.relive, doctor.doctor),
 }  # fmt: skip
 """All commands, by what a user wants to do, in the order of the work."""
@@ -45,10 +42,6 @@ WATCHED = ("run", "resume", "fork", "experiment", "watch")
 
 class Commands(click.Group):
     """A group that lists its commands under headings."""
-
-    def list_commands(self, ctx: click.Context) -> list[str]:
-        """Return the names of the commands in the order in which they were added."""
-        return list(self.commands)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the commands of each group under its heading."""

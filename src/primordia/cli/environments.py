@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from primordia import files
-from primordia.cli.paths import OutputPath
+from primordia.cli.values import OutputPath
 from primordia.errors import InputError
 
 

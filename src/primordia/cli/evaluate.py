@@ -14,8 +14,8 @@ from primordia.cli.flags import (
     run_argument,
     trust_option,
 )
-from primordia.cli.numbers import COUNT, TICKS
 from primordia.cli.table import show_table, spread
+from primordia.cli.values import COUNT, TICKS
 from primordia.errors import InputError
 from primordia.printable import counted
 

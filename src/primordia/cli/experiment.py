@@ -9,8 +9,8 @@ import click
 
 from primordia import cores
 from primordia.cli.flags import checkpoint_option, device_option, quiet_option, trust_option
-from primordia.cli.paths import OutputPath, PathType
 from primordia.cli.streams import report
+from primordia.cli.values import OutputPath, PathType
 from primordia.errors import InputError
 from primordia.printable import counted
 

@@ -7,8 +7,7 @@ from typing import Any
 
 import click
 
-from primordia.cli.numbers import Finite
-from primordia.cli.paths import OutputPath, PathType
+from primordia.cli.values import Finite, OutputPath, PathType
 from primordia.errors import InputError
 from primordia.settings.tables import parsed_toml
 from primordia.settings.values import check_values

@@ -17,7 +17,7 @@ from primordia.cli.flags import (
     trust_option,
     video_option,
 )
-from primordia.cli.paths import OutputPath, PathType
+from primordia.cli.values import OutputPath
 from primordia.errors import Trouble
 
 if TYPE_CHECKING:
@@ -105,45 +105,37 @@ def replay(
     click.echo(one.replay(out, (begin, end), others))
 
 
-@click.command(short_help="Write genomes to a file for new runs, or write a brain as ONNX.")
+@click.command(short_help="Make a film of a world.")
 @run_argument
+@video_option
+@click.option("--world", default=0, help="The world's number [0].")
 @click.option(
-    "--organism", "organisms", type=int, multiple=True, help="Birth number; may be repeated."
+    "--by",
+    type=click.Choice(["births", "ticks"]),
+    default="births",
+    help="Equally many births, or ticks, pass from each picture to the next [births].",
 )
-@click.option("--world", type=int, default=0, help="The organisms' world [0].")
+@click.option("--from", "begin", type=int, metavar="TICK", help="First tick shown.")
+@click.option("--to", "end", type=int, metavar="TICK", help="Last tick shown.")
+@click.option(
+    "--organism",
+    type=int,
+    metavar="ID",
+    help="Organism whose life is shown [the longest-lived so far].",
+)
+@recorded_device_option
 @trust_option
-@click.argument("file", type=OutputPath())
-def export(run: Path, organisms: tuple[int, ...], world: int, trust: bool, file: Path) -> None:
-    """Write genomes to a safetensors FILE, which `primordia run --ancestor` takes.
+def film(run: Path, trust: bool, begin: int | None, end: int | None, **chosen: Any) -> None:
+    """Film a world: births and deaths in all its cells, and beside them one organism's life.
 
-    If the name of FILE ends with .onnx, one brain is written as an ONNX model for other programs.
-
-    Without --organism the genome is that of the champion: the longest-lived of the later half of
-    the births.
+    The colour of a cell shows the line of descent. Cells are lighter with age, flash at a birth, and
+    fade after a death. A torus is drawn as a square. A ring is drawn as a disc, with the present at
+    the edge and the past inside. The film shows the world for at most half a minute, and then the
+    last picture for two more seconds. The life beside the world is shown at a different speed.
     """
     from primordia.api import load
 
-    chosen = load(run, trust).export(file, *organisms, world=world)
-    click.echo(f"{file}: organism {', '.join(map(str, chosen))}")
-
-
-@click.command("import", short_help="Write a state dictionary as a genome file.")
-@click.argument("state", type=PathType())
-@click.argument("file", type=OutputPath())
-@click.option("--task", required=True, help="Task, or FILE.toml, whose brain has these weights.")
-def import_(state: Path, file: Path, task: str) -> None:
-    """Write weights from another program as a genome FILE, which `primordia run --ancestor` takes.
-
-    STATE is a safetensors file with a tensor for each block of the brain. In PyTorch,
-    safetensors.torch.save_file writes a state dictionary to such a file.
-    """
-    from primordia import config
-    from primordia.brains import genomes
-
-    chosen = config.load(task)
-    layout = chosen.build_layout(chosen.build_habitat())
-    genomes.write(file, layout, genomes.of_state(state, layout), {"task": chosen.task})
-    click.echo(f"{file}: primordia run {task} --ancestor {file}")
+    click.echo(load(run, trust).film(ticks=(begin, end), **chosen))
 
 
 def chosen_organism(run: Path, organism: int | None, world: int | None, trust: bool) -> "Organism":

@@ -6,7 +6,7 @@ import click
 
 from primordia import interrupts
 from primordia.cli.flags import run_argument, runs_argument, trust_option
-from primordia.cli.paths import OutputPath
+from primordia.cli.values import OutputPath
 
 
 @click.command(short_help="Write a page with interactive figures.")

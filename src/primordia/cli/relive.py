@@ -8,8 +8,8 @@ import click
 
 from primordia.cli.assays.options import json_option
 from primordia.cli.flags import recorded_device_option, run_argument, trust_option
-from primordia.cli.paths import OutputPath
 from primordia.cli.table import show_table
+from primordia.cli.values import OutputPath
 from primordia.errors import Trouble
 
 if TYPE_CHECKING:

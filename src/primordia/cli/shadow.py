@@ -13,7 +13,7 @@ from primordia.cli.flags import (
     runs_argument,
     trust_option,
 )
-from primordia.cli.numbers import COUNT, TICKS
+from primordia.cli.values import COUNT, TICKS
 from primordia.printable import counted
 
 if TYPE_CHECKING:

@@ -113,10 +113,10 @@ def _go_on(run: Path, config: Config, checkpoint_every: float, watch: "_Watch") 
 
 
 def _worlds(run: Archive) -> list[WorldCounts]:
+    names = WorldCounts.model_fields.keys() - {"saturated"}
     return [
         WorldCounts(
-            **{name: world[name] for name in ("seed", "ticks", "births", "deaths")},
-            organism_ticks=world["organism_ticks"],
+            **{name: world[name] for name in names},
             saturated=world["saturation"] and world["saturation"]["tick"],
         )
         for world in info(run)["worlds"]

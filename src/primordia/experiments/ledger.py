@@ -123,6 +123,6 @@ def _is_lived(entry: Entry) -> bool:
         os.kill(entry.process, 0)
     except ProcessLookupError:
         return False
-    except PermissionError:  # a process of another user
-        return True
+    except PermissionError:
+        pass  # a process of another user
     return True

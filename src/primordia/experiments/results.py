@@ -76,19 +76,15 @@ def counts(arm: Records) -> dict[str, np.ndarray]:
     In a fork, extinctions and crashes are those since the fork.
     """
     lost = extinctions_of(arm)
-
-    def counted(name: str) -> np.ndarray:
-        return arm.count(f"world.worlds.{name}")
-
     return {
         "seed": arm.world_seeds,
-        "ticks": counted("tick"),
-        "births": counted("births"),
+        "ticks": arm.count("world.worlds.tick"),
+        "births": arm.count("world.worlds.births"),
         "extinctions": lost.total,
         "crashes": lost.crashes,
         "alive": arm.state["world.organisms.alive"].reshape(len(arm.world_seeds), -1).sum(axis=1),
-        "saturated_births": counted("saturated_births"),
-        "saturated_tick": counted("saturated"),
+        "saturated_births": arm.count("world.worlds.saturated_births"),
+        "saturated_tick": arm.count("world.worlds.saturated"),
     }
 
 

@@ -1,6 +1,7 @@
 """Checks of single values before settings are validated: arrays and files must be able to hold them."""
 
 import math
+import re
 from typing import Any
 
 from primordia.errors import InputError
@@ -9,6 +10,8 @@ DEEPEST = 16
 """Largest number of levels of nested tables and lists."""
 LARGEST = 3.4028234663852886e38
 """Largest float32."""
+UNWRITABLE = re.compile("[\0\ud800-\udfff]")
+"""Characters that UTF-8 or TOML cannot hold: NUL, and halves of surrogate pairs."""
 SHOWN = 100
 """Largest number of characters of a value in a message."""
 
@@ -38,16 +41,8 @@ def check_values(values: Any, path: str = "", depth: int = 0) -> None:
     elif isinstance(values, float) and not abs(values) <= LARGEST:
         unfit = "does not fit into float32" if math.isfinite(values) else "is not a finite number"
         raise InputError(f"{path}: {values} {unfit}")
-    elif isinstance(values, str) and ("\0" in values or not _writable(values)):
+    elif isinstance(values, str) and UNWRITABLE.search(values):
         raise InputError(f"{path}: {shown(values)} has a character that a text file cannot hold")
-
-
-def _writable(text: str) -> bool:
-    try:
-        text.encode()
-    except UnicodeEncodeError:
-        return False
-    return True
 
 
 def shown(value: object) -> str:

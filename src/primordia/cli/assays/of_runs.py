@@ -1,4 +1,4 @@
-"""Assays in which the oldest organisms of a run, or lines of descent, live again."""
+"""Assays of runs: from their records alone, or with organisms that live again."""
 
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,40 @@ from primordia.cli.assays.options import (
     each_option,
     source_argument,
 )
-from primordia.cli.flags import island_option
+from primordia.cli.flags import island_option, runs_argument
+
+
+@assay(
+    "Measure how strongly length of life is inherited.",
+    runs_argument,
+    after_option,
+    island_option("Count only parents and children that were both born on this island"),
+    trusted=False,
+)
+def heredity(runs: tuple[Path, ...], after: float, island: str | None) -> Found:
+    """Measure from the records how strongly length of life is inherited.
+
+    Several runs are measured as one arm. Each arm of an experiment is measured.
+    """
+    return {str(arm.path): arm.heredity(after, island) for arm in arms_of(runs)}
+
+
+@assay(
+    "Measure the error threshold of mutation.",
+    runs_argument,
+    after_option,
+    island_option("Count only organisms, and their children, that were born on this island"),
+    trusted=False,
+)
+def threshold(runs: tuple[Path, ...], after: float, island: str | None) -> Found:
+    """Measure the error threshold s (1 - p (1 - v)), from the records.
+
+    p is the share of children that mutate. v is the share of good parents' mutants that are as good
+    as the parents. s is the mean life of good parents' copies, divided by the mean life of all
+    organisms. If the result is above 1, a good line persists. Several runs are measured as one arm.
+    Each arm of an experiment is measured.
+    """
+    return {str(arm.path): arm.threshold(after, island) for arm in arms_of(runs)}
 
 
 @assay(
@@ -80,3 +113,45 @@ def line(
         row = oldest(opened, world, island=island)
         numbers = [(int(opened.lives.id[row]), int(opened.lives.world[row]))]
     return {str(run): [measure(opened, *each, habitat=habitat, **options) for each in numbers]}
+
+
+@assay(
+    "Measure how natives of each island live on every island.",
+    source_argument,
+    each_option(20, "natives of each island of a world, and number of founders"),
+    after_option,
+    *GAMES,
+)
+def transplant(run: Path, trust: bool, **options: Any) -> Found:
+    """Let natives of each island live again on every island of their world, beside founders.
+
+    Natives of an island were born there late. If natives live longer at home than natives of other
+    islands live there, they are adapted to their home (local against foreign; Kawecki & Ebert 2004).
+    Each arm of an experiment is measured.
+    """
+    from primordia.assays.transplant import transplant as measure
+
+    return {str(arm.path): measure(arm.opened(), **options) for arm in arms_of((run,), trust)}
+
+
+@assay(
+    "Measure who lives long on several islands, and since when.",
+    click.option(
+        "--most", type=click.IntRange(min=2), default=40, show_default=True,
+        help="At most this many ancestors of a line live again.",
+    ),
+    source_argument,
+    each_option(40, "late organisms of each world, and number of founders"),
+    after_option,
+    *GAMES,
+)  # fmt: skip
+def generalists(run: Path, trust: bool, **options: Any) -> Found:
+    """Let late organisms live again on every island, then the ancestors of the most general one.
+
+    An organism masters an island if it lives there longer than the best of as many founders. The last
+    table shows since which ancestor the line of a world's most general organism masters an island.
+    Each arm of an experiment is measured.
+    """
+    from primordia.assays.generalists import generalists as measure
+
+    return {str(arm.path): measure(arm.opened(), **options) for arm in arms_of((run,), trust)}

@@ -10,11 +10,9 @@ import click
 
 from primordia import files
 from primordia.cli.assays import tables
-from primordia.cli.assays.tables import Told
 from primordia.cli.flags import HabitatCommand, trust_option
-from primordia.cli.numbers import COUNT, TICKS, Finite
-from primordia.cli.paths import OutputPath, PathType
 from primordia.cli.table import show_table
+from primordia.cli.values import COUNT, TICKS, Finite, OutputPath, PathType
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -83,9 +81,9 @@ def assay(
     def decorated(measure: Callable[..., Found]) -> click.Command:
         @wraps(measure)
         def command(*given: Any, out: Path | None, as_json: bool, **chosen: Any) -> None:
-            name = measure.__name__
-            table = born_on(chosen.get("island"), getattr(tables, name))
-            tell(name, measure(*given, **chosen), as_json, out, table)
+            island = chosen.get("island")
+            born = "" if island is None else f", born on {island}"
+            tell(measure.__name__, measure(*given, **chosen), as_json, out, born)
 
         made: Any = command
         for option in reversed((click.command(short_help=short_help, **kind), *options, *common)):
@@ -93,13 +91,6 @@ def assay(
         return made
 
     return decorated
-
-
-def born_on(island: str | None, table: Callable[[str, list[Any]], Told]) -> Callable:
-    """Return a function that makes a table whose title names the island of birth, if there is one."""
-    if island is None:
-        return table
-    return lambda name, found: table(f"{name}, born on {island}", found)
 
 
 def arms_of(paths: tuple[Path, ...], trust: bool = False) -> "list[Run]":
@@ -115,23 +106,24 @@ def tell(
     found: Mapping[str, list[Any]],
     as_json: bool,
     out: Path | None,
-    table: Callable[[str, list[Any]], Told | list[Told]],
+    born: str = "",
 ) -> None:
     """Print the tables of each arm, or one JSON object for all; draw figures if a folder is given.
 
     Args:
-        name: the assay's name, which is also that of its function in `figures.assays` and of its files.
+        name: the assay's name, which is also that of its functions in `tables` and `figures.assays`, and
+            of its files.
         found: the results of each arm, by its path.
         as_json: whether JSON is printed.
         out: folder for figures; each of several arms has a folder in it, with the arm's name.
-        table: a function that makes one or more tables of an arm's results.
+        born: what a table's title says of the island of birth.
     """
     if as_json:
         plain = {arm: [each.to_dict() for each in of] for arm, of in found.items()}
         click.echo(json.dumps(plain))
     else:
         for arm, of in found.items():
-            told = table(arm, of)
+            told = getattr(tables, name)(f"{arm}{born}", of)
             for each in told if isinstance(told, list) else [told]:
                 show_table(*each)
     if out is not None:

@@ -1,38 +1,12 @@
-"""Numbers as values of options."""
+"""Bounds of the numbers that options take."""
 
+import math
 import re
 
 import click
 import pytest
 
 from primordia.cli.commands import commands
-from primordia.cli.numbers import COUNT, TICKS, Finite
-
-
-@pytest.mark.parametrize(
-    ("kind", "least", "most"),
-    [(TICKS, 1, 2_147_483_647), (COUNT, 1, 65_536)],
-    ids=["ticks", "count"],
-)
-def test_only_numbers_within_the_bounds_are_accepted(
-    kind: click.IntRange, least: int, most: int
-) -> None:
-    for number in (least, most):
-        assert kind.convert(str(number), None, None) == number
-    for number in (least - 1, most + 1):
-        with pytest.raises(click.BadParameter, match=str(number)):
-            kind.convert(str(number), None, None)
-
-
-def test_a_finite_number_is_a_number_in_its_range() -> None:
-    kind = Finite(min=0, min_open=True, max=3)
-    assert [kind.convert(text, None, None) for text in ("1e-9", "2", "3")] == [1e-9, 2.0, 3.0]
-    for text in ("0", "3.1", "nan", "inf", "-inf", "x"):
-        with pytest.raises(click.BadParameter, match=text):
-            kind.convert(text, None, None)
-    with pytest.raises(click.BadParameter, match="'inf' is not a finite number"):
-        Finite().convert("inf", None, None)
-
 
 BOUNDS: list[tuple[str, tuple[float, ...], tuple[float, ...]]] = [
     ("assay heredity --after", (0, 0.999), (-0.001, 1)),
@@ -40,8 +14,8 @@ BOUNDS: list[tuple[str, tuple[float, ...], tuple[float, ...]]] = [
     ("assay garden --after", (0, 0.999), (-0.001, 1)),
     ("assay garden --each", (1, 65_536), (0, 65_537)),
     ("assay effects --mutants", (1, 65_536), (0, 65_537)),
-    ("assay effects --scale", (1e-9, 1e30), (0, 1.1e30)),
-    ("assay effects --differs", (0, 5), (-0.001,)),
+    ("assay effects --scale", (1e-9, 1e30), (0, 1.1e30, math.nan)),
+    ("assay effects --differs", (0, 5), (-0.001, math.nan, math.inf)),
     ("assay line --most", (2, 10**9), (1,)),
     ("assay compete --worlds", (1, 65_536), (0, 65_537)),
     ("assay compete --ticks", (1, 2**31 - 1), (0, 2**31)),
@@ -51,6 +25,8 @@ BOUNDS: list[tuple[str, tuple[float, ...], tuple[float, ...]]] = [
     ("shadow --organisms", (1, 65_536), (0, 65_537)),
     ("shadow --ticks", (1, 2**31 - 1), (0, 2**31)),
     ("experiment --jobs", (1, 10**6), (0,)),
+    ("compare --births", (1, 10**6), (0,)),
+    ("compare --ticks", (1, 10**6), (0,)),
     ("watch --port", (0, 65_535), (-1, 65_536)),
     ("run --speed", (1e-9, 1e9), (0, 1.1e9)),
 ]
