@@ -95,7 +95,10 @@ def status(worlds: int = 3, tick: int = 100, **more: Any) -> Status:
 
 
 def terminal(width: int, height: int, **more: Any) -> Console:
-    """Return a terminal with all colours; `more` has other options of a console."""
+    """Return a terminal with all colours; `more` has other options of a console.
+
+    rich keeps the codes of a style for the first terminal that it meets, so all have the same colours.
+    """
     options: Any = {"force_terminal": True, "color_system": "truecolor", **more}
     return Console(file=io.StringIO(), width=width, height=height, **options)
 

@@ -9,6 +9,7 @@ import pytest
 
 from primordia.live import view as views
 from primordia.live import watching
+from primordia.live.pace import Pace
 from primordia.live.watching import Plain
 from tests.live.posed import Clock, status, view
 
@@ -99,16 +100,6 @@ def test_a_key_and_a_new_size_cause_a_frame_at_once(monkeypatch: pytest.MonkeyPa
     assert cleared == [1], "the second frame is drawn on an empty screen"
 
 
-def test_lines_are_followed_in_as_many_worlds_as_the_screen_has_rows(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    frames, asked = Frames(0.0, monkeypatch), list[int]()
-    frames.view._descent.follow = lambda _, shown: asked.append(shown)
-    for worlds in (2, 30, 31, 60):
-        frames.view(status(worlds, births=[1] * worlds))
-    assert asked == [2, 30, 30, 30]
-
-
 def test_before_the_first_chunk_the_view_says_that_it_compiles() -> None:
     """A view that ends before the first chunk removes these words."""
     shown = view()
@@ -137,10 +128,17 @@ def test_a_view_is_drawn_in_a_terminal_with_colours_that_can_move_its_cursor(
     monkeypatch.setattr("sys.stdout", SimpleNamespace(isatty=lambda: terminal))
     with watching.watching(False, 50.0) as listen:
         assert isinstance(listen, Plain) is not drawn
+        assert drawn or listen._pace.limit == 50.0
     assert made.call_count == drawn
     for shown in made.call_args_list:
         of, pace, given = shown.args
         assert (of, pace.limit, given) == (console, 50.0, keyboard if keys else None)
+
+
+def test_a_quiet_run_has_a_pace_if_its_speed_is_limited() -> None:
+    with watching.watching(True, 50.0) as pace, watching.watching(True) as none:
+        assert isinstance(pace, Pace)
+        assert (pace.limit, none) == (50.0, None)
 
 
 def test_a_plain_line_has_the_counts_of_all_worlds_every_two_seconds(

@@ -16,7 +16,6 @@ from primordia.live.companion import Companion
 from primordia.live.forms import Ring, Room, Torus
 from primordia.live.paint import Cells
 from primordia.live.panel import Outlook, numbers
-from primordia.live.words import OF_ISLANDS, pages
 from primordia.settings.islands import Islands
 from tests.engine.test_islands import WHEELS
 from tests.live.drawn import text
@@ -79,13 +78,6 @@ def test_the_living_of_each_island_are_counted_in_the_worlds_that_are_shown() ->
     assert not any(
         name.startswith("on ") for name in numbers(plain, 8, Outlook(1.0, 1.0), 1, SHORE)
     )
-
-
-def test_words_on_islands_are_explained_only_where_there_are_islands() -> None:
-    with_islands, plain = (
-        {row[:18].strip() for row in text(pages(100, 999, islands)[0])} for islands in (True, False)
-    )
-    assert with_islands - plain == {*OF_ISLANDS}
 
 
 def test_a_body_is_found_among_those_of_its_island() -> None:

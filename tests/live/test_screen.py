@@ -1,15 +1,13 @@
 """The screen of a world: its parts fill it, and it shows the organism that is chosen."""
 
-from types import SimpleNamespace
 from typing import Any
 
-import jax.numpy as jnp
 import numpy as np
 import pytest
 
 from primordia.engine.engine import Engine
 from primordia.law.metabolism import ONE
-from primordia.live.companion import Companion, _perceived
+from primordia.live.companion import _perceived
 from primordia.live.terminal import Keyboard
 from primordia.live.view import View
 from primordia.runs.loop import Status
@@ -67,22 +65,6 @@ def test_a_torus_of_1024_cells_is_whole_and_large() -> None:
     assert "shown: 20 x 32 of 32 x 32 cells" in "\n".join(screen(made, "", 60, 15))
 
 
-def test_the_oldest_organism_is_shown_and_then_the_next() -> None:
-    made, companion = meadow(cells=16), Companion()
-    born = np.asarray(made.state.world.organisms.born.lo)
-    alive = np.asarray(made.state.world.organisms.alive)
-    order = [cell for cell in np.argsort(born, kind="stable").tolist() if alive[cell]]
-    assert companion.find(made, None) == order[0]
-    for cell in [*order[1:], order[0]]:
-        assert companion.find(made, None, step=1) == cell
-        assert companion.find(made, None) == cell, "it stays"
-    die(made, order[0])
-    assert companion.find(made, None) == order[1], "the oldest takes the place of the dead"
-    die(made, *order)
-    assert companion.find(made, None) is None
-    assert "nothing is alive" in "\n".join(screen(made, "o", 80, 24))
-
-
 @pytest.mark.slow
 def test_what_it_does_next_is_what_it_then_does() -> None:
     """The food of this habitat is the action, of which the motor draws a part."""
@@ -97,26 +79,3 @@ def test_what_it_does_next_is_what_it_then_does() -> None:
     before = eaten_until(1)
     next_ = [_perceived(made, cell, world=0)[2].action[0] for cell in range(16)]
     np.testing.assert_allclose(eaten_until(2) - before, next_, atol=1 / ONE)
-
-
-def die(made: Engine, *cells: int) -> None:
-    world = made.state.world
-    alive = jnp.asarray(world.organisms.alive).at[jnp.array(cells)].set(False)
-    organisms = world.organisms._replace(alive=alive)
-    made.state = made.state._replace(world=world._replace(organisms=organisms))
-
-
-def test_a_habitat_that_fails_to_draw_is_not_asked_again(monkeypatch: pytest.MonkeyPatch) -> None:
-    made, asked = meadow(cells=16), []
-
-    def picture(*_: Any) -> None:
-        asked.append(1)
-        raise RuntimeError
-
-    made.habitat = SimpleNamespace(picture=picture, caption=made.habitat.caption)
-    made.habitat.seen = lambda: made.state.bodies
-    view, status = View(terminal(80, 24)), Status(made, 1.0)
-    view._obey("o", status)
-    for _ in range(3):
-        assert "action" in "\n".join(text(view._rows(status)))
-    assert len(asked) == 1
