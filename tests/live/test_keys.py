@@ -37,10 +37,10 @@ def test_keys_pause_step_and_stop_and_the_terminal_is_given_back(
     terminal.read_until("\x1b[?25l", "line of descent", "quit", "at most 5 ticks/s")
     assert terminal.modes() != before
     terminal.press(b" ")
-    ticks = [terminal.read_match(r"paused.*?tick +([\d,]+) ")]
+    ticks = [terminal.read_until(pattern=r"paused.*?tick +([\d,]+) ")]
     for _ in range(2):
         terminal.press(b"s")
-        ticks.append(terminal.read_match(rf"tick +(?!{ticks[-1]} )([\d,]+) "))
+        ticks.append(terminal.read_until(pattern=rf"tick +(?!{ticks[-1]} )([\d,]+) "))
     counts = [int(tick.replace(",", "")) for tick in ticks]
     assert np.diff(counts).tolist() == [1, 1]
     terminal.press(b"?")

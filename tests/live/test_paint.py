@@ -4,7 +4,6 @@ import colorsys
 
 import numpy as np
 import pytest
-from rich.segment import Segment
 
 from primordia.live.paint import (
     EMPTY,
@@ -13,7 +12,6 @@ from primordia.live.paint import (
     field,
     levels,
     mosaic,
-    padded,
     photograph,
     shades,
     skyline,
@@ -114,8 +112,3 @@ def test_levels_go_in_eight_equal_steps_from_minus_one_to_one() -> None:
     assert levels(np.array(steps)) == "▁▂▃▄▅▆▇█"
     assert levels(np.array([-9.0, 9.0, -np.inf, np.inf])) == "▁█▁█"
     assert levels(np.array([np.nan])) == levels(np.array([0.0])), "an undefined value is drawn as 0"
-
-
-def test_a_row_is_padded_to_a_width_and_never_cut() -> None:
-    row = [Segment("ab"), Segment("c")]
-    assert text([padded(row, 5), padded(row, 3), padded(row, 1)]) == ["abc  ", "abc", "abc"]

@@ -9,7 +9,6 @@ from primordia.live.panel import (
     Outlook,
     duration,
     heading,
-    keys,
     numbers,
     panel,
     saturation,
@@ -139,11 +138,6 @@ def test_the_bar_has_the_share_of_saturated_worlds_or_the_calm_of_full_worlds(
     some = counted(len(next(iter(counts.values()))), **counts)
     bar = f"{'━' * filled}{'╌' * (length - filled)}  " if length else ""
     assert text([saturation(some, 8, 1000, width)]) == [f"{bar}{shown}"]
-
-
-def test_only_the_given_keys_are_named() -> None:
-    """The first character of `space` is an s, too."""
-    assert text([keys("s-o?q")]) == ["space pause  s step  -+ speed  o organism  ? words  q quit  "]
 
 
 @pytest.mark.parametrize(

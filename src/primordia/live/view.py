@@ -15,11 +15,11 @@ from primordia.live.descent import Descent
 from primordia.live.forms import Room
 from primordia.live.pace import Pace
 from primordia.live.paint import FAINT, Row
-from primordia.live.panel import Outlook, heading, keys, numbers, panel, saturation
+from primordia.live.panel import Outlook, heading, numbers, panel, saturation
 from primordia.live.scene import Scene, Stage
 from primordia.live.screen import composed
 from primordia.live.terminal import Keyboard
-from primordia.live.words import pages
+from primordia.live.words import keys, pages
 from primordia.printable import printable
 from primordia.runs.loop import Status
 
