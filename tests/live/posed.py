@@ -94,18 +94,23 @@ def status(worlds: int = 3, tick: int = 100, **more: Any) -> Status:
     return Status(engine, 75.0)
 
 
-def terminal(width: int, height: int, **more: Any) -> Console:
-    """Return a terminal with all colours; `more` has other options of a console.
+def terminal(width: int, height: int) -> Console:
+    """Return a terminal with all colours.
 
     rich keeps the codes of a style for the first terminal that it meets, so all have the same colours.
     """
-    options: Any = {"force_terminal": True, "color_system": "truecolor", **more}
-    return Console(file=io.StringIO(), width=width, height=height, **options)
+    return Console(
+        file=io.StringIO(),
+        width=width,
+        height=height,
+        force_terminal=True,
+        color_system="truecolor",
+    )
 
 
-def view(width: int = 100, height: int = 30, keyboard: Any = None, **more: Any) -> Any:
+def view(width: int = 100, height: int = 30, keyboard: Any = None) -> Any:
     """Return a view in such a terminal."""
-    return View(terminal(width, height, **more), keyboard=keyboard)
+    return View(terminal(width, height), keyboard=keyboard)
 
 
 class Clock:

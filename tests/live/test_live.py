@@ -100,7 +100,7 @@ def test_the_view_follows_the_living(running: tuple[str, Engine]) -> None:
 
 def test_a_frame_spells_out_control_characters() -> None:
     console = terminal(80, 10)
-    console.print(live.Frame([[Segment("a\x1b]0;title\x07b\x9b2Jc\n")]]))
+    console.print(live.frame([[Segment("a\x1b]0;title\x07b\x9b2Jc\n")]]))
     assert isinstance(console.file, io.StringIO)
     assert console.file.getvalue() == "a\\x1b]0;title\\x07b\\x9b2Jc\\n\n"
 

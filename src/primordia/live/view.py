@@ -5,9 +5,9 @@ import time
 from signal import SIGINT, raise_signal
 from types import TracebackType
 
-from rich.console import Console, ConsoleOptions, RenderResult
+from rich.console import Console
 from rich.live import Live
-from rich.segment import Segment
+from rich.segment import Segment, SegmentLines
 
 from primordia.live.census import Census, Speed
 from primordia.live.companion import Companion
@@ -53,7 +53,7 @@ class View:
     def __enter__(self) -> "View":
         waiting = Segment("Compiling, which takes some seconds", FAINT)
         self._live.start()
-        self._live.update(Frame([[waiting]]), refresh=True)
+        self._live.update(frame([[waiting]]), refresh=True)
         return self
 
     def __exit__(
@@ -126,7 +126,7 @@ class View:
         if self._console.size != self._size:
             self._console.clear()  # a terminal reflows its lines when its width changes
             self._size = self._console.size
-        self._live.update(Frame(self._rows(status)), refresh=True)
+        self._live.update(frame(self._rows(status)), refresh=True)
         now = time.perf_counter()
         self._cost, self._stale = now - began, False
         self._due = now + min(self._cost / self.SHARE, self.LONGEST)
@@ -196,15 +196,7 @@ def _no_keys(seconds: float) -> str:
     return ""
 
 
-class Frame:
-    """Rows that rich can print."""
-
-    def __init__(self, rows: list[Row]) -> None:
-        self._rows = rows
-
-    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """Yield the rows, cut to the width."""
-        for parts in self._rows:
-            row = [Segment(printable(text, kept=""), style) for text, style, _ in parts]
-            yield from Segment.adjust_line_length(row, options.max_width, pad=False)
-            yield Segment.line()
+def frame(rows: list[Row]) -> SegmentLines:
+    """Return rows that rich can print; it cuts them to the width of the terminal."""
+    spelled = ([Segment(printable(text, kept=""), style) for text, style, _ in row] for row in rows)
+    return SegmentLines(spelled, new_lines=True)
