@@ -176,7 +176,7 @@ def test_ancestors_are_drawn_at_their_births() -> None:
 
 
 def test_up_to_six_blocks_are_named_and_colours_begin_again() -> None:
-    for blocks, named in ((6, 6), (9, 0)):
+    for blocks, named in ((6, 6), (7, 0), (9, 0)):
         changes = axes_of(descent.draw, some_ancestors(5, blocks))[1]
         colours = [each.get_color() for each in changes.get_lines()]
         assert colours == [*style.PALETTE, *style.PALETTE][:blocks]

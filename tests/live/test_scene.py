@@ -90,7 +90,7 @@ def test_many_cells_make_several_equal_skylines_of_at_most_four_rows(
         # Where not all worlds fit, as many are shown as fit.
         (Ring(200), 8, Room(80, 5), Grid(1, 5, Room(76, 1), 0)),
         (Ring(200), 3, Room(80, 5), Grid(1, 3, Room(76, 1), 0)),
-        (Ring(30), 9, Room(70, 3), Grid(2, 6, Room(31, 1), 0)),
+        (Ring(30), 9, Room(69, 3), Grid(2, 6, Room(30, 1), 0)),
         (Torus(63, 64), 4, Room(80, 65), Grid(1, 1, Room(76, 65), 0)),
         (Torus(63, 64), 4, Room(80, 66), Grid(1, 2, Room(76, 32), 1)),
     ],

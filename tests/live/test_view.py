@@ -148,7 +148,7 @@ def test_the_last_frame_has_neither_keys_nor_words() -> None:
     shown._draw = lambda _: drawn.append(shown._rows(of))
     shown._status = of
     shown._obey("?", of)
-    shown.__exit__(None, None, None)
+    shown.__exit__()
     (rows,) = map(text, drawn)
     assert "quit" not in "\n".join(rows)
     assert "died of" in "\n".join(rows)

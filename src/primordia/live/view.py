@@ -3,7 +3,6 @@
 import sys
 import time
 from signal import SIGINT, raise_signal
-from types import TracebackType
 
 from rich.console import Console
 from rich.live import Live
@@ -56,12 +55,7 @@ class View:
         self._live.update(frame([[waiting]]), refresh=True)
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         """Draw the last state and leave it on the screen."""
         if self._status is None:
             self._live.update("")
