@@ -1,6 +1,7 @@
 """Worlds, counts, views and a clock for tests of the live view, without a law that changes worlds."""
 
 import io
+from collections.abc import Iterable
 from types import SimpleNamespace
 from typing import Any
 
@@ -14,6 +15,7 @@ from primordia.law.events import BIRTHS, DEATHS, Rows
 from primordia.law.placement import Placement
 from primordia.law.world import Cause, Organisms, World, Worlds
 from primordia.live.census import Census
+from primordia.live.terminal import Keyboard
 from primordia.live.view import View
 from primordia.random.wide import Wide, wide
 from primordia.runs.loop import Status
@@ -106,6 +108,20 @@ def terminal(width: int, height: int) -> Console:
         force_terminal=True,
         color_system="truecolor",
     )
+
+
+class Pressed(Keyboard):
+    """Keys of a terminal, of which one is pressed at each look; no time passes."""
+
+    there = True
+
+    def __init__(self, keys: Iterable[str] = "") -> None:
+        super().__init__()
+        self._keys = iter(keys)
+
+    def pressed(self, seconds: float) -> str:
+        """Return the next key, or "" after the last."""
+        return next(self._keys, "")
 
 
 def view(width: int = 100, height: int = 30, keyboard: Any = None) -> Any:

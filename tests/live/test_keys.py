@@ -144,20 +144,9 @@ def test_without_a_terminal_there_are_no_keys(monkeypatch: pytest.MonkeyPatch) -
 # Nothing that is lived.
 
 
-class Pressed(Keyboard):
-    """Keys that are pressed one at each look."""
-
-    def __init__(self, keys: str) -> None:
-        super().__init__()
-        self._keys = iter(keys)
-
-    def pressed(self, seconds: float) -> str:
-        return next(self._keys, "")
-
-
 def watch(keys: str, run: Path) -> list[str]:
     """Live a small run while keys are pressed -> the digest of each world."""
-    with View(posed.terminal(100, 30), keyboard=Pressed(keys)) as view:
+    with View(posed.terminal(100, 30), keyboard=posed.Pressed(keys)) as view:
         loop.start(config(HERD, stop={"ticks": 400}), run, listen=view)
     return digests(run)
 

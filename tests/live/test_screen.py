@@ -8,11 +8,10 @@ import pytest
 from primordia.engine.engine import Engine
 from primordia.law.metabolism import ONE
 from primordia.live.companion import _perceived
-from primordia.live.terminal import Keyboard
 from primordia.live.view import View
 from primordia.runs.loop import Status
 from tests.live.drawn import text
-from tests.live.posed import look_alive, terminal
+from tests.live.posed import Pressed, look_alive, terminal
 from tests.worlds import MEADOW, config
 
 
@@ -26,7 +25,7 @@ def meadow(**settings: Any) -> Engine:
 def screen(made: Engine, keys: str, width: int, height: int) -> list[str]:
     """Return the rows of the screen after some keys."""
     console = terminal(width, height)
-    view, status = View(console, keyboard=Keyboard()), Status(made, 1.0, made.limits({}))
+    view, status = View(console, keyboard=Pressed()), Status(made, 1.0, made.limits({}))
     view._descent.follow(status, 1)
     for key in keys:
         view._obey(key, status)

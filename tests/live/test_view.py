@@ -10,12 +10,11 @@ import pytest
 
 from primordia.engine.state import Limits
 from primordia.live import view as views
-from primordia.live.terminal import Keyboard
 from primordia.live.words import pages
 from primordia.random.wide import wide
 from primordia.runs.loop import Status
 from tests.live.drawn import text
-from tests.live.posed import Clock, counted, status, view
+from tests.live.posed import Clock, Pressed, counted, status, view
 
 
 def value_of(shown: Any, of: Status, name: str) -> str | None:
@@ -112,7 +111,7 @@ def test_n_moves_among_the_organisms_of_the_world_that_is_shown() -> None:
 
 def test_the_pages_of_words_are_shown_one_after_another() -> None:
     """One row is the heading, one has the keys, and one is for the cursor."""
-    shown, of = view(60, 12, keyboard=Keyboard()), status()
+    shown, of = view(60, 12, keyboard=Pressed()), status()
     for _ in range(2):
         for page in pages(60, 12 - 3):
             shown._obey("?", of)
@@ -132,7 +131,7 @@ def test_the_heading_has_the_pace_and_the_time_and_the_bar_has_the_calm() -> Non
 
 
 def test_keys_are_named_where_they_mean_something() -> None:
-    shown = view(keyboard=Keyboard())
+    shown = view(keyboard=Pressed())
     one, many = status(1), status(3)
     assert [key in text(shown._rows(of))[-1] for of in (one, many) for key in ("world", "next")] == [
         False, False, True, False,
@@ -143,7 +142,7 @@ def test_keys_are_named_where_they_mean_something() -> None:
 
 
 def test_the_last_frame_has_neither_keys_nor_words() -> None:
-    shown, of = view(keyboard=Keyboard()), status()
+    shown, of = view(keyboard=Pressed()), status()
     drawn: list[Any] = []
     shown._draw = lambda _: drawn.append(shown._rows(of))
     shown._status = of

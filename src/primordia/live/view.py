@@ -39,7 +39,8 @@ class View:
     def __init__(
         self, console: Console, pace: Pace | None = None, keyboard: Keyboard | None = None
     ) -> None:
-        self._console, self._pace, self._keyboard = console, pace or Pace(), keyboard
+        self._console, self._pace = console, pace or Pace()
+        self._keyboard = keyboard or Keyboard()
         self._live = Live(console=console, auto_refresh=False, redirect_stderr=sys.stderr.isatty())
         self._speed, self._stage, self._descent = Speed(), Stage(), Descent()
         self._size, self._due, self._cost, self._stale = console.size, 0.0, 0.0, False
@@ -60,7 +61,7 @@ class View:
         if self._status is None:
             self._live.update("")
         else:
-            self._keyboard, self._page = None, None
+            self._keyboard, self._page = Keyboard(), None
             self._draw(self._status)
         self._live.stop()
 
@@ -85,7 +86,7 @@ class View:
         assert self._status is not None
         if self._stale and seconds > self._cost:
             self._draw(self._status)
-        pressed = self._keyboard.pressed(seconds) if self._keyboard else _no_keys(seconds)
+        pressed = self._keyboard.pressed(seconds)
         for key in pressed:
             self._obey(key, self._status)
         if pressed or self._console.size != self._size:
@@ -127,10 +128,10 @@ class View:
 
     def _rows(self, status: Status) -> list[Row]:
         width, height = self._size.width, self._size.height - 1
-        room = Room(width, max(height - (2 if self._keyboard else 1), 1))
+        room = Room(width, max(height - (2 if self._keyboard.there else 1), 1))
         rows = [heading(status.engine.config, str(self._pace), status.wall_s, width)]
         rows += self._words(room) or self._world(status, room)
-        if self._keyboard:
+        if self._keyboard.there:
             rows += [[]] * (height - 1 - len(rows))
             rows = [*rows[: height - 1], self._keys(status)]
         return rows[:height]
@@ -181,13 +182,6 @@ class View:
         shown = range(law.worlds) if alone is None else [alone]
         takeovers = self._descent.takeovers(shown)
         return numbers(census, law.cells, outlook, takeovers, law.islands)
-
-
-def _no_keys(seconds: float) -> str:
-    """Wait, and return that no key was pressed."""
-    if seconds:
-        time.sleep(seconds)
-    return ""
 
 
 def frame(rows: list[Row]) -> SegmentLines:
