@@ -153,42 +153,26 @@ def test_a_strip_without_known_values_is_left_out_and_zeros_are_known() -> None:
 
 def test_heredity_is_drawn_as_strips_of_the_worlds() -> None:
     """The second world has too few copies. In the fourth nothing was measured."""
-    draw = np.random.default_rng(6)
 
-    def pairs(known: bool) -> Pairs:
-        slope, *shares = draw.random(4).tolist()
-        return Pairs(9, slope if known else None, *shares)
+    def pairs(slope: float | None) -> Pairs:
+        return Pairs(9, slope, 0.5, 0.25, 0.125) if slope else Pairs(0, None, None, None, None)
 
-    nothing = Pairs(0, None, None, None, None)
     found = [
-        Inherited(
-            world, pairs(world != 1), pairs(True), pairs(True), *draw.normal(0, 1, 2).tolist()
-        )
-        for world in range(3)
+        Inherited(0, pairs(0.1), pairs(0.2), pairs(0.3), 4.0, -2.0),
+        Inherited(1, pairs(None), pairs(0.4), pairs(0.5), -1.0, 0.5),
+        Inherited(2, pairs(0.6), pairs(0.7), pairs(0.8), 1.0, 0.0),
+        Inherited(3, pairs(None), pairs(None), pairs(None), None, None),
     ]
-    found.append(Inherited(3, nothing, nothing, nothing, None, None))
     slopes, shares, terms = axes_of(assays.heredity, found)
-    first, second, third, _ = found
-    check_strips(
-        slopes,
-        {
-            "copies": [each.copies.slope or 0.0 for each in (first, third)],
-            "mutants": [each.mutants.slope or 0.0 for each in found[:3]],
-            "both": [each.both.slope or 0.0 for each in found[:3]],
-        },
-    )
-    mutants = [each.mutants for each in (first, second, third)]
-    names = {"as long": "as_long", "a tenth\nlonger": "longer", "a third\nshorter": "shorter"}
-    check_strips(shares, {name: [getattr(m, f) for m in mutants] for name, f in names.items()})
-    fields = "selection", "transmission"
-    check_strips(terms, {name: [getattr(each, name) for each in found[:3]] for name in fields})
+    each = {"copies": [0.1, 0.6], "mutants": [0.2, 0.4, 0.7], "both": [0.3, 0.5, 0.8]}
+    check_strips(slopes, each)
+    of_mutants = {"as long": 0.5, "a tenth\nlonger": 0.25, "a third\nshorter": 0.125}
+    check_strips(shares, {name: [share] * 3 for name, share in of_mutants.items()})
+    check_strips(terms, {"selection": [4, -1, 1], "transmission": [-2, 0.5, 0]})
     assert (sorted(levels(slopes)), levels(terms)) == ([0, 1], [0])
-    titles = "Slope of log life on the parent's", "Share of mutants"
-    for axes, title in zip(
-        (slopes, shares, terms), (*titles, "Change of mean log life"), strict=True
-    ):
-        assert labels(axes)[0] == title
-        assert key(axes) == WORLDS
+    titles = "Slope of log life on the parent's", "Share of mutants", "Change of mean log life"
+    assert [labels(axes)[0] for axes in (slopes, shares, terms)] == [*titles]
+    assert all(key(axes) == WORLDS for axes in (slopes, shares, terms))
 
 
 def test_the_threshold_is_drawn_as_strips_of_the_worlds() -> None:

@@ -175,24 +175,22 @@ def test_ancestors_are_drawn_at_their_births() -> None:
     assert changes.get_ylim()[0] == 0
 
 
-@pytest.mark.parametrize("blocks", [6, 7, 9])
-def test_up_to_six_blocks_are_named_and_colours_begin_again(blocks: int) -> None:
-    changes = axes_of(descent.draw, some_ancestors(5, blocks))[1]
-    colours = [each.get_color() for each in changes.get_lines()]
-    assert colours == [*style.PALETTE, *style.PALETTE][:blocks]
-    assert len(key(changes)) == (blocks if blocks == 6 else 0)
+def test_up_to_six_blocks_are_named_and_colours_begin_again() -> None:
+    for blocks, named in ((6, 6), (7, 0), (9, 0)):
+        changes = axes_of(descent.draw, some_ancestors(5, blocks))[1]
+        colours = [each.get_color() for each in changes.get_lines()]
+        assert colours == [*style.PALETTE, *style.PALETTE][:blocks]
+        assert len(key(changes)) == named
 
 
-@pytest.mark.parametrize("known", [0, 1])
-def test_sizes_of_mutations_are_drawn_if_any_is_known(known: int) -> None:
-    sizes = np.full((5, 2), np.nan)
-    sizes[2, :known] = 3
-    for changes in (sizes, None):
+def test_sizes_of_mutations_are_drawn_if_any_is_known() -> None:
+    unknown = np.full((5, 2), np.nan)
+    some = unknown.copy()
+    some[2, 0] = 3
+    for changes, drawn in ((None, 0), (unknown, 0), (some, 2)):
         axes = axes_of(descent.draw, some_ancestors(5, changes=changes))[1]
         texts = {each.get_text() for each in axes.findobj(Text)}
-        drawn = changes is not None and known > 0
-        assert ("mutations are unknown" in texts) != drawn
-        assert len(axes.get_lines()) == 2 * drawn
+        assert (len(axes.get_lines()), "mutations are unknown" in texts) == (drawn, not drawn)
 
 
 @pytest.mark.parametrize("count", [5, 20])

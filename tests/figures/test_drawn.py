@@ -272,11 +272,3 @@ def test_the_threshold_is_drawn_stretch_by_stretch() -> None:
         np.testing.assert_allclose(x, (edges[1:] + edges[:-1]) / 2)
         np.testing.assert_allclose(y, [getattr(each, name) for each in expected])
     assert threshold.draw(run_of(lives_of(*rows[:300])), 0) is None
-
-
-def test_the_invented_lives_are_of_all_kinds() -> None:
-    assert {*LIVES.cause.tolist()} == {ALIVE, *map(int, CAUSES)}
-    assert (LIVES.ended[LIVES.died] == UNTIL).any(), "some die in the last tick"
-    assert KINDS["fork"].inherited.any()
-    few, stopped, _ = worlds(KINDS["unequal"])
-    assert (len(few), stopped.ended.max()) == (41, 40)

@@ -90,7 +90,7 @@ def test_labels_and_limits_of_survival(kind: str) -> None:
     assert curves == [1] * 4, "also of a quarter with one organism"
 
 
-@pytest.mark.parametrize("longest", [10, 100, 1000])
+@pytest.mark.parametrize("longest", [10, 1000])
 def test_the_age_at_the_end_of_the_axis_has_its_numbers_at_risk(longest: int) -> None:
     lives = world_of([(0, longest - 1, True), (1, 4, True)] * 4, until=longest + 9)
     (alive, *_) = axes_of(survival.draw, run_of(lives), 0)
@@ -100,11 +100,11 @@ def test_the_age_at_the_end_of_the_axis_has_its_numbers_at_risk(longest: int) ->
     assert written == {1: ["2"] * 4, longest: ["2", "2", "0", "0"]}
 
 
-@pytest.mark.parametrize(("last", "end"), [(3, 10), (10, 10), (11, 11)])
-def test_an_axis_of_time_holds_at_least_ten_ticks(last: int, end: int) -> None:
+def test_an_axis_of_time_holds_at_least_ten_ticks() -> None:
     axes = Figure().subplots()
-    style.time_axis(axes, last, "time")
-    assert axes.get_xlim() == (1, end)
+    for last, end in ((3, 10), (11, 11)):
+        style.time_axis(axes, last, "time")
+        assert axes.get_xlim() == (1, end)
 
 
 def foraged(food: np.ndarray, enough: np.ndarray) -> Axes:
@@ -127,13 +127,13 @@ def test_an_infinite_break_even_is_not_drawn() -> None:
     nowhere = foraged(np.abs(food[:1]), np.full((1, 3), np.inf))
     assert (key(nowhere), lines(nowhere, style.ORANGE)) == ({}, [])
     assert nowhere.get_ylim()[0] == 0
+    assert "no samples yet" not in {each.get_text() for each in nowhere.texts}
 
 
 def test_the_panel_of_food_says_if_there_are_no_samples_yet() -> None:
     axes = foraged(np.zeros((1, 0)), np.zeros((1, 0)))
     assert "no samples yet" in {each.get_text() for each in axes.texts}
     assert len(axes.get_yticks()) == 0
-    assert "no samples yet" not in {each.get_text() for each in foraged(*np.ones((2, 1, 2))).texts}
 
 
 @pytest.mark.parametrize("worlds", [1, 2])

@@ -11,9 +11,7 @@ import primordia
 from primordia.film import film as films
 from primordia.film.frame import HEIGHT, WIDTH
 from primordia.film.shape import SIDE
-from primordia.runs import loop
 from tests.commands import complains, here
-from tests.worlds import MEADOW, config
 
 
 @pytest.fixture(scope="module")
@@ -37,25 +35,6 @@ def test_a_world_is_filmed_with_the_life_of_the_oldest_beside_it(
     assert np.abs(np.diff(world[: -films.STILL], axis=0)).max() > 60
     assert np.abs(np.diff(life[: -films.STILL], axis=0)).max() > 60
     assert np.abs(np.diff(light[-films.STILL // 2 :], axis=0)).mean() < 1
-
-
-@pytest.mark.slow
-def test_a_film_by_ticks_of_a_chosen_organism(poles: primordia.Run, tmp_path: Path) -> None:
-    file = poles.film(tmp_path / "film.gif", by="ticks", ticks=(10, 70), organism=3)
-    frames = iio.imread(file)
-    assert len(frames) <= 61 + films.STILL
-    assert frames.shape[1:3] == (HEIGHT // 2, WIDTH // 2)
-
-
-@pytest.mark.slow
-def test_a_world_whose_habitat_draws_nothing_is_filmed_alone(tmp_path: Path) -> None:
-    loop.start(config({**MEADOW, "stop": {"ticks": 60}}), tmp_path / "run")
-    file = primordia.load(tmp_path / "run").film(by="ticks")
-    frames = iio.imread(file)
-    assert len(frames) == 61 + films.STILL
-    inside = frames[-1, :, (WIDTH - SIDE) // 2 : (WIDTH + SIDE) // 2]
-    beside = frames[-1, 50 : HEIGHT - 40, : (WIDTH - SIDE) // 2 - 4]
-    assert inside.max() > 100 > 60 > beside.max()
 
 
 def test_the_film_of_a_fork_counts_the_births_before_it(

@@ -11,7 +11,7 @@ from primordia.film import shape as shapes
 from primordia.film.colours import FADING, FLASH, GROUND, PALETTE, colours
 from primordia.film.frame import HEIGHT, STRIPS, WIDTH, Frames, cell_colours
 from primordia.film.moments import RATE, SECONDS, moments
-from primordia.film.shape import PAPER, SIDE, Ring, shape
+from primordia.film.shape import PAPER, SIDE, shape
 from primordia.law.placement import Placement
 from primordia.organism import video
 from primordia.phylogeny.clades import clades_of
@@ -21,36 +21,15 @@ LIVED = [(0, 9, True), (2, 30, False), (2, 4, True), (5, 30, False), (11, 1, Tru
 FULL = 20
 
 
-def hue(colour: np.ndarray) -> np.ndarray:
-    """Return a colour's direction, which its light does not change."""
-    return colour / np.linalg.norm(colour.astype(float))
-
-
-def test_a_cell_has_the_colour_of_its_line_lighter_with_age_and_fades_after_death() -> None:
-    world = world_of(LIVED, until=40)
-    ticks = np.arange(12, 40)
-    cells = world.cell.astype(np.int64)
-    drawn = np.array(list(colours(world, cells, ticks, FULL)), float)
-    for number, tick in enumerate(ticks):
-        for row in range(len(world)):
-            if alive(world, row, tick):
-                likeness = [hue(drawn[number, row]) @ hue(colour) for colour in PALETTE]
-                assert max(likeness) > 0.9995
-                assert number == 0 or drawn[number, row].sum() >= drawn[number - 1, row].sum()
+def test_a_cell_fades_after_death() -> None:
+    world, ticks = world_of(LIVED, until=40), np.arange(12, 40)
+    drawn = np.array(list(colours(world, world.cell.astype(np.int64), ticks, FULL)), float)
     dying = int(world.ended[world.died].max()) - 12
     row = int(np.argmax(np.where(world.died, world.ended, 0)))
     left = FADING ** np.arange(1, len(ticks) - dying + 1)
     expected = GROUND + left[:, None] * (drawn[dying - 1, row] - GROUND)
     np.testing.assert_allclose(drawn[dying:, row], expected, atol=1.5)
-    never = np.flatnonzero(world.ended < 12)
-    assert (drawn[0, never] == GROUND).all()
-
-
-def test_a_newborn_flashes_once() -> None:
-    world = world_of([(0, 90, False)] * 9 + [(7, 90, False)], until=40)
-    drawn = np.array(list(colours(world, world.cell.astype(np.int64), np.arange(5, 10), FULL)), int)
-    assert drawn[2, 9].min() > drawn[3, 9].max() * 0.9
-    assert drawn[2, 9].sum() > drawn[4, 9].sum()
+    assert (drawn[0, world.ended < 12] == GROUND).all()
 
 
 @pytest.mark.parametrize("together", [1, 10**6])
@@ -91,21 +70,14 @@ def test_a_torus_is_drawn_cell_for_cell() -> None:
     assert (picture[: top - 1] == PAPER).all()
 
 
-@pytest.mark.parametrize(("cells", "columns"), [(10, 4), (16, 4)])
-def test_a_well_mixed_world_is_a_square(cells: int, columns: int) -> None:
-    form = shape(Placement(topology="well-mixed"), cells)
+def test_a_well_mixed_world_is_a_square() -> None:
+    form = shape(Placement(topology="well-mixed"), 10)
     picture = form.draw(np.full((len(form.cells), 3), 200, np.uint8))
-    zoom = SIDE // columns
     # Each cell has a dark edge of one pixel above and on its left.
-    assert (picture == 200).all(axis=2).sum() == cells * (zoom - 1) ** 2
+    assert (picture == 200).all(axis=2).sum() == 10 * (SIDE // 4 - 1) ** 2
 
 
-def test_large_worlds_are_drawn_in_part() -> None:
-    torus = shape(Placement(topology="torus4"), 1_000_000)
-    assert torus.draw(np.zeros((len(torus.cells), 3), np.uint8)).shape == (SIDE, SIDE, 3)
-    assert (np.diff(torus.cells[:100]) == 3).all()
-    ring = shape(Placement(), 5_000)
-    assert len(ring.cells) <= Ring.MOST
+def test_large_rings_are_drawn_in_part() -> None:
     for cells, step in ((1_024, 1), (1_025, 2), (2_048, 2), (2_049, 3)):
         assert shape(Placement(), cells).cells.tolist() == list(range(0, cells, step))
 
@@ -192,20 +164,14 @@ def test_moments_pass_by_births_or_by_ticks() -> None:
         moments(world, 0, "births", (1_700, 1_800))
 
 
-def test_a_picture_has_the_world_the_life_and_the_share_that_has_passed() -> None:
+def test_a_picture_has_the_share_that_has_passed() -> None:
     world = np.full((SIDE, SIDE, 3), 90, np.uint8)
-    life = Image.new("RGB", (30, 10), "red")
-    picture = np.asarray(Frames("a task", alone=False).draw(world, "tick 1", 0.25, life, "it"))
+    picture = np.asarray(Frames("a task", alone=False).draw(world, "tick 1", 0.25, None, ""))
     assert picture.shape == (HEIGHT, WIDTH, 3)
-    assert (picture == 90).all(axis=2).sum() == SIDE**2
-    red = (picture == (255, 0, 0)).all(axis=2)
-    assert red.sum() > 30 * 10
-    assert np.argmax(red.any(axis=0)) > SIDE
-    bar = (picture[-1] != PAPER).any(axis=1)
-    assert bar.sum() == pytest.approx(WIDTH / 4, abs=1)
-    below = (picture[-10:, : WIDTH // 4] != PAPER).any(axis=2)
-    assert below.all(axis=1).tolist() == [False] * 7 + [True] * 3
-    assert not below[:7].any()
+    bar = (picture[-10:] != PAPER).any(axis=2)
+    assert bar[-1].sum() == pytest.approx(WIDTH / 4, abs=1)
+    assert bar[:, : WIDTH // 4].all(axis=1).tolist() == [False] * 7 + [True] * 3
+    assert not bar[:7].any()
 
 
 def test_a_picture_has_nothing_of_the_one_before_it() -> None:

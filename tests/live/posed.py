@@ -1,6 +1,7 @@
 """Worlds, counts, views and a clock for tests of the live view, without a law that changes worlds."""
 
 import io
+from collections.abc import Iterable
 from types import SimpleNamespace
 from typing import Any
 
@@ -14,6 +15,7 @@ from primordia.law.events import BIRTHS, DEATHS, Rows
 from primordia.law.placement import Placement
 from primordia.law.world import Cause, Organisms, World, Worlds
 from primordia.live.census import Census
+from primordia.live.terminal import Keyboard
 from primordia.live.view import View
 from primordia.random.wide import Wide, wide
 from primordia.runs.loop import Status
@@ -94,15 +96,37 @@ def status(worlds: int = 3, tick: int = 100, **more: Any) -> Status:
     return Status(engine, 75.0)
 
 
-def terminal(width: int, height: int, **more: Any) -> Console:
-    """Return a terminal with all colours; `more` has other options of a console."""
-    options: Any = {"force_terminal": True, "color_system": "truecolor", **more}
-    return Console(file=io.StringIO(), width=width, height=height, **options)
+def terminal(width: int, height: int) -> Console:
+    """Return a terminal with all colours.
+
+    rich keeps the codes of a style for the first terminal that it meets, so all have the same colours.
+    """
+    return Console(
+        file=io.StringIO(),
+        width=width,
+        height=height,
+        force_terminal=True,
+        color_system="truecolor",
+    )
 
 
-def view(width: int = 100, height: int = 30, keyboard: Any = None, **more: Any) -> Any:
+class Pressed(Keyboard):
+    """Keys of a terminal, of which one is pressed at each look; no time passes."""
+
+    there = True
+
+    def __init__(self, keys: Iterable[str] = "") -> None:
+        super().__init__()
+        self._keys = iter(keys)
+
+    def pressed(self, seconds: float) -> str:
+        """Return the next key, or "" after the last."""
+        return next(self._keys, "")
+
+
+def view(width: int = 100, height: int = 30, keyboard: Any = None) -> Any:
     """Return a view in such a terminal."""
-    return View(terminal(width, height, **more), keyboard=keyboard)
+    return View(terminal(width, height), keyboard=keyboard)
 
 
 class Clock:

@@ -21,37 +21,26 @@ class Terminal:
     def __init__(self, ours: int, theirs: int) -> None:
         self.ours, self.theirs = ours, theirs
 
-    def begin(self, *words: object, keys: str | None = None) -> subprocess.Popen[bytes]:
-        """Start a command whose controlling terminal this is, so that it gets keys and Ctrl-C.
-
-        `keys` is a file that it reads in place of the terminal.
-        """
+    def begin(self, *words: object) -> subprocess.Popen[bytes]:
+        """Start a command whose controlling terminal this is, so that it gets keys and Ctrl-C."""
         variables = environment() | SETTINGS
         variables.pop("NO_COLOR", None)
-        take = 'exec <"$0" >"$0" 2>&1 "$@"' if keys is None else f'exec >"$0" 2>&1 "$@" <{keys}'
-        shell = ["sh", "-c", take, os.ttyname(self.theirs)]
+        shell = ["sh", "-c", 'exec <"$0" >"$0" 2>&1 "$@"', os.ttyname(self.theirs)]
         return subprocess.Popen(
             [*shell, *COMMAND, *map(str, words)], env=variables, start_new_session=True
         )
 
-    def read_until(self, *parts: str, seconds: float = 60.0) -> str:
-        """Return what is written until all parts are in it."""
-        read = ""
-        while not all(part in read for part in parts):
-            ready = select.select([self.ours], [], [], seconds)[0]
-            assert ready, f"nothing more after {read[-500:]!r}"
-            read += os.read(self.ours, 65536).decode(errors="replace")
-        return read
+    def read_until(self, *parts: str, pattern: str = "") -> str:
+        """Return what is written, until all parts are in it, and a pattern in it without colours.
 
-    def read_match(self, pattern: str, seconds: float = 60.0) -> str:
-        """Return the first group of a pattern, once it is in what is written without colours."""
-        read = ""
-        while not (
-            found := re.search(pattern, re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", read), re.DOTALL)
-        ):
-            assert select.select([self.ours], [], [], seconds)[0], f"no match in {read[-500:]!r}"
+        With a pattern, return its first group.
+        """
+        read, found = "", None
+        while not all(part in read for part in parts) or found is None:
+            assert select.select([self.ours], [], [], 60.0)[0], f"no more after {read[-500:]!r}"
             read += os.read(self.ours, 65536).decode(errors="replace")
-        return found[1]
+            found = re.search(pattern, re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", read), re.DOTALL)
+        return found[1] if pattern else read
 
     def press(self, keys: bytes) -> None:
         """Press keys."""

@@ -1,5 +1,6 @@
 """The times at which the view draws, takes past moments, and prints plain lines."""
 
+from collections.abc import Iterable
 from types import SimpleNamespace
 from typing import Any
 from unittest.mock import MagicMock
@@ -9,18 +10,21 @@ import pytest
 
 from primordia.live import view as views
 from primordia.live import watching
+from primordia.live.pace import Pace
 from primordia.live.watching import Plain
-from tests.live.posed import Clock, status, view
+from tests.live.posed import Clock, Pressed, status, view
 
 
 class Frames:
     """A view whose frames take some seconds of a clock. It notes when each frame began."""
 
-    def __init__(self, cost: float, monkeypatch: pytest.MonkeyPatch, keyboard: Any = None) -> None:
+    def __init__(
+        self, cost: float, monkeypatch: pytest.MonkeyPatch, keys: Iterable[str] = ""
+    ) -> None:
         self.now, self.cost, self.began = 100.0, cost, list[float]()
         clock = SimpleNamespace(perf_counter=lambda: self.now, sleep=lambda _: None)
         monkeypatch.setattr(views, "time", clock)
-        self.view = view(keyboard=keyboard)
+        self.view = view(keyboard=Pressed(keys))
         self.view._live = SimpleNamespace(update=self._update)
         self.view._rows = lambda _: []
         self.view._pace = lambda *_: None
@@ -83,8 +87,7 @@ def test_a_waiting_run_draws_a_state_that_is_not_drawn_yet(
 
 
 def test_a_key_and_a_new_size_cause_a_frame_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    presses = iter(["", "", "w?", ""])
-    frames = Frames(0.05, monkeypatch, SimpleNamespace(pressed=lambda _: next(presses)))
+    frames = Frames(0.05, monkeypatch, keys=["", "", "w?", ""])
     cleared: list[int] = []
     frames.view._console.clear = lambda: cleared.append(len(frames.began))
     frames.view(status(3))
@@ -99,16 +102,6 @@ def test_a_key_and_a_new_size_cause_a_frame_at_once(monkeypatch: pytest.MonkeyPa
     assert cleared == [1], "the second frame is drawn on an empty screen"
 
 
-def test_lines_are_followed_in_as_many_worlds_as_the_screen_has_rows(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    frames, asked = Frames(0.0, monkeypatch), list[int]()
-    frames.view._descent.follow = lambda _, shown: asked.append(shown)
-    for worlds in (2, 30, 31, 60):
-        frames.view(status(worlds, births=[1] * worlds))
-    assert asked == [2, 30, 30, 30]
-
-
 def test_before_the_first_chunk_the_view_says_that_it_compiles() -> None:
     """A view that ends before the first chunk removes these words."""
     shown = view()
@@ -119,16 +112,15 @@ def test_before_the_first_chunk_the_view_says_that_it_compiles() -> None:
 
 
 @pytest.mark.parametrize(
-    ("terminal", "dumb", "grey", "keys", "drawn"),
-    [(False, False, False, False, False), (True, True, False, True, False),
-     (True, False, True, True, False), (True, False, False, True, True),
-     (True, False, False, False, True)],
+    ("terminal", "dumb", "grey", "drawn"),
+    [(False, False, False, False), (True, True, False, False),
+     (True, False, True, False), (True, False, False, True)],
 )  # fmt: skip
 def test_a_view_is_drawn_in_a_terminal_with_colours_that_can_move_its_cursor(
-    terminal: bool, dumb: bool, grey: bool, keys: bool, drawn: bool, monkeypatch: pytest.MonkeyPatch
+    terminal: bool, dumb: bool, grey: bool, drawn: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Otherwise, plain lines are printed. The view has keys if standard input is a terminal too."""
-    made, keyboard = MagicMock(), MagicMock(there=keys)
+    """Otherwise, plain lines are printed."""
+    made, keyboard = MagicMock(), MagicMock()
     keyboard.return_value.__enter__.return_value = keyboard
     console = SimpleNamespace(is_dumb_terminal=dumb, no_color=grey)
     monkeypatch.setattr(watching, "Console", lambda **_: console)
@@ -137,10 +129,17 @@ def test_a_view_is_drawn_in_a_terminal_with_colours_that_can_move_its_cursor(
     monkeypatch.setattr("sys.stdout", SimpleNamespace(isatty=lambda: terminal))
     with watching.watching(False, 50.0) as listen:
         assert isinstance(listen, Plain) is not drawn
+        assert drawn or listen._pace.limit == 50.0
     assert made.call_count == drawn
     for shown in made.call_args_list:
         of, pace, given = shown.args
-        assert (of, pace.limit, given) == (console, 50.0, keyboard if keys else None)
+        assert (of, pace.limit, given) == (console, 50.0, keyboard)
+
+
+def test_a_quiet_run_has_a_pace_if_its_speed_is_limited() -> None:
+    with watching.watching(True, 50.0) as pace, watching.watching(True) as none:
+        assert isinstance(pace, Pace)
+        assert (pace.limit, none) == (50.0, None)
 
 
 def test_a_plain_line_has_the_counts_of_all_worlds_every_two_seconds(

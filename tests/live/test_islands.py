@@ -8,15 +8,15 @@ import numpy as np
 import pytest
 
 from primordia.engine.engine import Engine
-from primordia.habitats.archipelago import Parts, archipelago, bodies_with
+from primordia.habitats.archipelago import Parts, archipelago
 from primordia.live import companion as companions
 from primordia.live.borders import ruler
 from primordia.live.census import Census
 from primordia.live.companion import Companion
-from primordia.live.forms import Ring, Room, Torus
+from primordia.live.forms import Ring, Room, Torus, form_of
 from primordia.live.paint import Cells
 from primordia.live.panel import Outlook, numbers
-from primordia.live.words import OF_ISLANDS, pages
+from primordia.runs.loop import Status
 from primordia.settings.islands import Islands
 from tests.engine.test_islands import WHEELS
 from tests.live.drawn import text
@@ -51,7 +51,7 @@ def test_every_skyline_of_a_ring_names_its_part_of_the_islands() -> None:
 
 
 def test_brackets_beside_a_torus_name_its_islands() -> None:
-    form = Torus(4, 4, BAYS)
+    form = form_of(law(16, topology="torus4", islands=BAYS))
     drawn, part = form.draw(old(16), [], Room(24, 8))
     assert (form.scale(Room(24, 8)), part) == (4, "")
     assert [row[16:].rstrip() for row in text(drawn)] == [
@@ -81,72 +81,54 @@ def test_the_living_of_each_island_are_counted_in_the_worlds_that_are_shown() ->
     )
 
 
-def test_words_on_islands_are_explained_only_where_there_are_islands() -> None:
-    with_islands, plain = (
-        {row[:18].strip() for row in text(pages(100, 999, islands)[0])} for islands in (True, False)
-    )
-    assert with_islands - plain == {*OF_ISLANDS}
-
-
-def test_a_body_is_found_among_those_of_its_island() -> None:
-    """Two worlds of eight cells: cell 4 of the second is the second cell of its island there."""
-    bodies = Parts((np.arange(6), np.arange(10) + 100), SHORE.sizes)
-    habitat = archipelago([Mill(), Watch()], SHORE)
-    for place, expected in ((0, 0), (2, 2), (3, 100), (7, 104), (8, 3), (12, 106)):
-        own, row = bodies_with(bodies, habitat, place)
-        assert own[row] == expected
-    own, row = bodies_with(np.arange(16), Mill(), 12)
-    assert own[row] == 12
-
-
-@pytest.fixture(params=["jax", "host"])
-def inhabited(request: pytest.FixtureRequest) -> Engine:
-    """Return two worlds with three islands; four fifths of the cells are inhabited."""
+@pytest.mark.parametrize("host", [False, True])
+def test_an_organism_of_every_island_is_shown_with_its_body(host: bool) -> None:
+    """Two worlds have three islands; four fifths of the cells are inhabited."""
     habitat = WHEELS["habitat"]
-    if request.param == "host":
-        inner = ("mill", "watch", "mill")
-        islands = zip(habitat["islands"], inner, strict=True)
-        mirrors = [
-            {**island, "habitat": {"name": "tests.toys:Mirror", "inner": kind}}
-            for island, kind in islands
-        ]
-        habitat = {"islands": mirrors}
+    if host:
+        inner = zip(habitat["islands"], ("mill", "watch", "mill"), strict=True)
+        habitat = {
+            "islands": [
+                {**island, "habitat": {"name": "tests.toys:Mirror", "inner": kind}}
+                for island, kind in inner
+            ]
+        }
     made = Engine(config({**WHEELS, "habitat": habitat}))
     look_alive(made)
-    return made
-
-
-def test_an_organism_of_every_island_is_shown_with_its_body(inhabited: Engine) -> None:
-    shown, of = Companion(), inhabited.law.islands
-    seen = {}
+    shown, of, seen = Companion(), made.law.islands, {}
     for step in range(38):
-        cell = shown.find(inhabited, None, step=min(step, 1))
+        cell = shown.find(made, None, step=min(step, 1))
         assert cell is not None
         number = int(of.of_cells(cell % 24))
         if number not in seen:
-            seen[number] = text(shown.rows(inhabited, None, Room(70, 30)))
+            seen[number] = text(shown.rows(made, None, Room(70, 30)))
     assert sorted(seen) == [0, 1, 2]
     for number, rows in seen.items():
         assert rows[0].endswith(f", on {of.names[number]}")
         assert any(row.startswith("senses") for row in rows)
+    screen = "\n".join(text(view(120, 40)._rows(Status(made, 1.0))))
+    for name in of.names:
+        assert f" {name} ─" in screen
+        assert f"on {name} " in screen
 
 
+@pytest.mark.parametrize(("cell", "sense"), [(2, 2.0), (7, 104.0), (8, 3.0), (12, 106.0)])
 def test_an_organism_senses_with_its_own_body_on_its_own_island(
-    monkeypatch: pytest.MonkeyPatch,
+    cell: int, sense: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Cell 4 of the second world; its body is the second of its island's second world."""
+    """Cell 12 is cell 4 of the second world; its body is the second of its island's second world."""
     given: list[Any] = []
 
     def shared(function: Any, of: Any) -> Any:
         def called(*values: Any) -> Any:
-            given.append((of, values))
+            given.append(of)
             return SimpleNamespace(action=jnp.zeros((1, 2))) if of is made.law.alone else values[0]
 
         return called
 
     monkeypatch.setattr(companions, "shared", shared)
-    world = posed([[1] * 8] * 2, np.zeros((2, 8), int).tolist(), [9, 9], seed=[1, 2])
     rows = np.arange(16.0)
+    world = posed([[1] * 8] * 2, np.zeros((2, 8), int).tolist(), [9, 9], seed=[1, 2])
     organisms = world.organisms._replace(
         energy=rows, genome={"input": rows[:, None]}, memory=rows[:, None]
     )
@@ -154,28 +136,6 @@ def test_an_organism_senses_with_its_own_body_on_its_own_island(
     state = SimpleNamespace(world=world._replace(organisms=organisms), bodies=bodies)
     habitat = archipelago([Mill(), Watch()], SHORE)
     made: Any = SimpleNamespace(law=law(8, 2, islands=SHORE), state=state, habitat=habitat)
-    senses, memory, body = companions._perceived(made, 12, 1)
-    assert given[0][0] == habitat.habitats[1]
-    assert (senses.tolist(), memory.tolist(), body.body.tolist()) == ([106.0], [12.0], [106.0])
-
-
-@pytest.mark.parametrize("topology", ["ring", "torus4", "well-mixed"])
-def test_the_view_names_islands_and_counts_their_organisms(topology: str) -> None:
-    settings = {**WHEELS, "cells": 24, "seeds": 1, "placement": {"topology": topology}}
-    settings["seasons"] = []
-    if topology != "well-mixed":
-        islands = [
-            {name: value for name, value in island.items() if name != "placement"}
-            for island in WHEELS["habitat"]["islands"]
-        ]
-        settings["habitat"] = {**WHEELS["habitat"], "islands": islands}
-    made = Engine(config(settings))
-    look_alive(made)
-    drawn = view(120, 40)
-    status: Any = SimpleNamespace(engine=made, limits=None, wall_s=1.0)
-    status.config = made.config
-    drawn._status = status
-    shown = "\n".join(text(drawn._world(status, Room(118, 36))))
-    for name in ("mill", "watch", "slow"):
-        assert f" {name}" in shown
-        assert f"on {name}" in shown
+    senses, memory, body = companions._perceived(made, cell, cell // 8)
+    assert given[0] == habitat.habitats[int(sense >= 100)]
+    assert (senses.tolist(), memory.tolist(), body.body.tolist()) == ([sense], [cell], [sense])

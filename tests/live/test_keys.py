@@ -1,23 +1,20 @@
 """Keys of the live view: they change what is seen and how fast, and nothing that is lived."""
 
-import io
 import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
 from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
-from rich.console import Console
 
 import primordia
-from primordia.live.pace import Pace
 from primordia.live.terminal import Keyboard
 from primordia.live.view import View
 from primordia.runs import loop
+from tests.live import posed
 from tests.live.terminals import Terminal, opened
 from tests.trouble import SMALL
 from tests.worlds import HERD, config
@@ -40,10 +37,10 @@ def test_keys_pause_step_and_stop_and_the_terminal_is_given_back(
     terminal.read_until("\x1b[?25l", "line of descent", "quit", "at most 5 ticks/s")
     assert terminal.modes() != before
     terminal.press(b" ")
-    ticks = [terminal.read_match(r"paused.*?tick +([\d,]+) ")]
+    ticks = [terminal.read_until(pattern=r"paused.*?tick +([\d,]+) ")]
     for _ in range(2):
         terminal.press(b"s")
-        ticks.append(terminal.read_match(rf"tick +(?!{ticks[-1]} )([\d,]+) "))
+        ticks.append(terminal.read_until(pattern=rf"tick +(?!{ticks[-1]} )([\d,]+) "))
     counts = [int(tick.replace(",", "")) for tick in ticks]
     assert np.diff(counts).tolist() == [1, 1]
     terminal.press(b"?")
@@ -98,28 +95,22 @@ def test_a_shell_that_has_changed_the_terminal_is_followed(
         assert terminal.modes() == taken
 
 
-def test_a_command_in_the_background_leaves_the_terminal_alone(
-    terminal: Terminal, keyboard: type[Keyboard], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(Keyboard, "_in_front", lambda _: False)
-    before = terminal.modes()
-    with keyboard() as keys:
-        terminal.press(b"abc\n")
-        assert keys.pressed(0.0) == ""
-        assert terminal.modes() == before
-
-
-def test_a_command_that_goes_into_the_background_leaves_the_terminal_to_the_shell(
+@pytest.mark.parametrize("begins_in_front", [False, True])
+def test_a_command_in_the_background_leaves_the_terminal_to_the_shell(
+    begins_in_front: bool,
     terminal: Terminal,
     keyboard: type[Keyboard],
     waits: list[float],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """The command still waits. It ends without a change of the terminal's modes."""
+    before = terminal.modes()
+    monkeypatch.setattr(Keyboard, "_in_front", lambda _: begins_in_front)
     with keyboard() as keys:
         taken = terminal.modes()
+        assert (taken != before) == begins_in_front
         monkeypatch.setattr(Keyboard, "_in_front", lambda _: False)
-        terminal.press(b"a")
+        terminal.press(b"abc\n")
         assert [keys.pressed(seconds) for seconds in (0.25, 0.0, 0.125)] == ["", "", ""]
         assert waits == [0.25, 0.125]
         assert keys.there
@@ -142,32 +133,20 @@ def test_a_terminal_that_is_gone_has_no_more_keys(
 
 
 def test_without_a_terminal_there_are_no_keys(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sys, "__stdin__", None)
-    with Keyboard() as keys:
-        assert not keys.there
-        assert keys.pressed(0.0) == ""
+    with open(os.devnull) as nothing:
+        for stdin in (None, nothing):
+            monkeypatch.setattr(sys, "__stdin__", stdin)
+            with Keyboard() as keys:
+                assert not keys.there
+                assert keys.pressed(0.0) == ""
 
 
 # Nothing that is lived.
 
 
-class Pressed(Keyboard):
-    """Keys that are pressed one at each look."""
-
-    def __init__(self, keys: str) -> None:
-        super().__init__()
-        self._keys = iter(keys)
-
-    def pressed(self, seconds: float) -> str:
-        return next(self._keys, "")
-
-
 def watch(keys: str, run: Path) -> list[str]:
     """Live a small run while keys are pressed -> the digest of each world."""
-    # rich keeps the codes of a style for the first terminal that it meets, so all have the same colours
-    colours: Any = {"force_terminal": True, "color_system": "truecolor"}
-    console = Console(file=io.StringIO(), width=100, height=30, **colours)
-    with View(console, Pace(), Pressed(keys)) as view:
+    with View(posed.terminal(100, 30), keyboard=posed.Pressed(keys)) as view:
         loop.start(config(HERD, stop={"ticks": 400}), run, listen=view)
     return digests(run)
 
@@ -176,11 +155,9 @@ def digests(run: Path) -> list[str]:
     return [world["digest"] for world in primordia.load(run).info()["worlds"]]
 
 
-KEYS = "o n n ws s s -+ w ? ? on s w o =++"
-
-
 def test_a_run_is_the_same_whatever_keys_are_pressed(tmp_path: Path) -> None:
-    assert watch(KEYS, tmp_path / "keys") == watch("", tmp_path / "none")
+    keys = "o n n ws s s -+ w ? ? on s w o =++"
+    assert watch(keys, tmp_path / "keys") == watch("", tmp_path / "none")
 
 
 def test_q_writes_a_checkpoint_from_which_the_run_goes_on(tmp_path: Path) -> None:

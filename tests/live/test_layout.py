@@ -46,17 +46,8 @@ def test_numbers_are_beside_a_torus() -> None:
     rows = parts.screen(80, 24)
     assert parts.asked["W"] == [(52, 22)]
     assert parts.asked["n"] == [(80, 12), (26, 23)], "the first only counts the rows of the numbers"
-    assert rows[0] == ""
-    assert rows[1:4] == ["W" * 52 + "  " + "n" * 26] * 3
-    assert rows[4:23] == ["W" * 52] * 19
-    assert rows[23:] == ["colour: line of descent"]
-
-
-def test_numbers_are_below_a_ring() -> None:
-    parts = Parts(beside=False)
-    rows = parts.screen(80, 24)
-    assert parts.asked["W"] == [(80, 18)]
-    assert rows == ["", *["W" * 80] * 18, "colour: line of descent", "", *["n" * 80] * 3]
+    beside, alone = "W" * 52 + "  " + "n" * 26, "W" * 52
+    assert rows == ["", *[beside] * 3, *[alone] * 19, "colour: line of descent"]
 
 
 @pytest.mark.parametrize(("width", "beside"), [(48, True), (47, False)])
@@ -68,77 +59,57 @@ def test_a_world_with_numbers_beside_it_has_at_least_twenty_columns(
     assert parts.asked["W"] == [(20, 22) if beside else (47, 18)]
 
 
-@pytest.mark.parametrize(("height", "spaces"), [(20, 1), (19, 0)])
-def test_empty_rows_are_between_the_parts_of_a_screen_of_twenty_rows(
-    height: int, spaces: int
+@pytest.mark.parametrize(
+    ("height", "numbers", "world", "legend", "space"),
+    [(24, 12, 18, 1, [""]), (20, 10, 14, 1, [""]), (19, 9, 15, 1, []), (15, 7, 11, 1, []),
+     (14, 7, 11, 0, []), (7, 3, 4, 0, []), (5, 3, 2, 0, [])],
+)  # fmt: skip
+def test_numbers_are_below_a_ring(
+    height: int, numbers: int, world: int, legend: int, space: list[str]
 ) -> None:
-    rows = Parts(beside=False).screen(80, height)
-    assert [row for row in rows if not row] == [""] * 2 * spaces
-    assert len(rows) == height
+    """They may have half of the rows, and at least three. A world of twelve rows has a legend.
 
-
-@pytest.mark.parametrize(("height", "legend"), [(15, True), (14, False)])
-def test_a_world_of_twelve_rows_has_a_legend(height: int, legend: bool) -> None:
-    """Three rows are numbers."""
-    rows = Parts(beside=False).screen(80, height)
-    assert rows[:-3] == ["W" * 80] * 11 + ["colour: line of descent"] * legend
-
-
-@pytest.mark.parametrize(("height", "rows"), [(24, 12), (9, 4), (7, 3), (6, 3), (5, 3), (3, 3)])
-def test_numbers_below_a_world_have_half_of_the_rows_and_at_least_three(
-    height: int, rows: int
-) -> None:
+    A screen of twenty rows has empty rows between its parts.
+    """
     parts = Parts(beside=False)
-    parts.screen(80, height)
-    assert parts.asked["n"] == [(80, rows)]
+    above = ["W" * 80] * world + ["colour: line of descent"] * legend
+    assert parts.screen(80, height) == [*space, *above, *space, *["n" * 80] * 3]
+    assert parts.asked == {"W": [(80, world)], "n": [(80, numbers)], "o": []}
 
 
 def test_the_note_about_what_is_shown_takes_a_row_of_the_world() -> None:
     parts = Parts(beside=False, part="shown: the first 8 of 10 cells")
     rows = parts.screen(80, 24)
     assert parts.asked["W"] == [(80, 18), (80, 17)]
-    assert rows[1:20] == [
-        *["W" * 80] * 17, "shown: the first 8 of 10 cells", "colour: line of descent",
-    ]  # fmt: skip
+    assert rows[18:20] == ["shown: the first 8 of 10 cells", "colour: line of descent"]
     assert Parts(beside=False, part="shown: a").screen(20, 24)[19] == "colour: line of desc"
 
 
 def test_an_organism_is_below_the_numbers_that_are_beside_the_world() -> None:
+    """The numbers may have a third of the 23 rows."""
     parts = Parts()
     rows = parts.screen(80, 24, organism=True)
-    assert parts.asked["n"][1:] == [(26, 7)], "a third of the 23 rows"
-    assert parts.asked["o"] == [(26, 19)]
-    assert rows[1:4] == ["W" * 52 + "  " + "n" * 26] * 3
-    assert rows[4] == "W" * 52
-    assert rows[5:] == ["W" * 52 + "  " + "o" * 26] * 18 + [
-        f"{'colour: line of descent':54}{'o' * 26}"
-    ]
+    assert parts.asked == {"W": [(52, 22)], "n": [(80, 12), (26, 7)], "o": [(26, 19)]}
+    left = ["W" * 52] * 22 + [f"{'colour: line of descent':52}"]
+    right = [*["n" * 26] * 3, "", *["o" * 26] * 19]
+    joined = [f"{one}  {other}".rstrip() for one, other in zip(left, right, strict=True)]
+    assert rows == ["", *joined]
 
 
 @pytest.mark.parametrize(
-    ("width", "organism"), [(200, 64), (160, 64), (100, 40), (70, 28), (60, 28), (50, 28)]
+    ("width", "organism", "world"),
+    [(200, 64, 134), (100, 40, 58), (50, 28, 20), (49, 28, 0), (20, 20, 0)],
 )
 def test_an_organism_beside_its_world_has_two_fifths_of_the_width(
-    width: int, organism: int
+    width: int, organism: int, world: int
 ) -> None:
-    """It has 28 to 64 columns. The world has the rest."""
+    """It has 28 to 64 columns. It takes the place of a world that would be too narrow."""
     parts = Parts(beside=False)
     rows = parts.screen(width, 24, organism=True)
     assert parts.asked["o"] == [(organism, 19)]
-    world = width - organism - 2
-    assert parts.asked["W"] == [(world, 18)]
-    assert rows[1] == "W" * world + "  " + "o" * organism
+    assert parts.asked["W"] == ([(world, 18)] if world else [])
+    assert rows[1] == ("W" * world + "  " if world else "") + "o" * organism
     assert rows[-4:] == ["", *["n" * width] * 3]
-
-
-@pytest.mark.parametrize(("width", "organism"), [(49, 28), (40, 28), (20, 20)])
-def test_an_organism_takes_the_place_of_a_world_that_would_be_too_narrow(
-    width: int, organism: int
-) -> None:
-    parts = Parts(beside=False)
-    rows = parts.screen(width, 24, organism=True)
-    assert parts.asked["W"] == []
-    assert rows == ["", *["o" * organism] * 19, "", *["n" * width] * 3]
 
 
 def test_blocks_side_by_side_are_two_columns_apart() -> None:

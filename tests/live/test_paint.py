@@ -4,7 +4,6 @@ import colorsys
 
 import numpy as np
 import pytest
-from rich.segment import Segment
 
 from primordia.live.paint import (
     EMPTY,
@@ -13,7 +12,6 @@ from primordia.live.paint import (
     field,
     levels,
     mosaic,
-    padded,
     photograph,
     shades,
     skyline,
@@ -35,38 +33,30 @@ def aged(line: list[int], ticks: list[int]) -> Cells:
     return Cells.of(np.array(line), np.array(ticks), full=1000)
 
 
-def test_bars_grow_with_age_and_empty_cells_are_dots() -> None:
-    some = aged([4, 4, EMPTY, 9, 9], [0, 30, 0, 1000, 10**9])
-    assert text(skyline(some, wide=2, tall=2)) == ["      █ █ ", "▁ █ · █ █ "]
-    assert text(skyline(some, wide=1, tall=1)) == ["▁▄·▇▇"]
+@pytest.mark.parametrize(("tall", "most"), [(1, 7), (3, 24)])
+def test_a_bar_grows_in_equal_steps_from_one_eighth_to_all_of_its_rows(
+    tall: int, most: int
+) -> None:
+    """A single row ends one eighth below the row above. Dots are empty cells."""
+    heights = [1 + round(age * (most - 1)) for age in AGES]
+    expected = [
+        [BARS[min(max(height - 8 * below, 0), 8)] for height in heights]
+        for below in reversed(range(tall))
+    ]
+    for below, row in zip(reversed(range(tall)), expected, strict=True):
+        row.append(" " if below else "·")
+    cells = Cells(np.array([0] * 6 + [EMPTY]), np.append(AGES, 1.0))
+    assert text(skyline(cells, wide=1, tall=tall)) == ["".join(row) for row in expected]
+    for bar in (1, 2):
+        wide = ["".join(bar * glyph + " " for glyph in row) for row in expected]
+        assert text(skyline(cells, wide=bar + 1, tall=tall)) == wide
 
 
 def test_each_line_has_its_own_colour() -> None:
-    ((first, second, third),) = skyline(aged([0, 1, 0], [9, 9, 9]), wide=1, tall=1)
+    cells = Cells(np.array([0, 0, 1, 64]), np.ones(4))
+    ((first, second, third),) = skyline(cells, wide=1, tall=1)
+    assert (first.text, second.text, third.text) == ("▇▇", "▇", "▇"), "a segment for each style"
     assert first.style == third.style != second.style
-
-
-def test_a_torus_is_drawn_with_two_rows_in_a_line() -> None:
-    some = aged([1, 1, 2, 2, 3, EMPTY], [1000] * 6)
-    rows = field(some, columns=2, scale=1)
-    assert text(rows) == ["▀▀", "▀▀"]
-    assert [len(row) for row in rows] == [1, 2], "there is a segment for each stretch of one style"
-    assert len(field(some, columns=2, scale=4)) == 6
-
-
-@pytest.mark.parametrize("tall", [1, 2, 3])
-def test_a_bar_grows_in_equal_steps_from_one_eighth_to_all_of_its_rows(tall: int) -> None:
-    """A single row ends one eighth below the row above."""
-    most = 7 if tall == 1 else 8 * tall
-    heights = [1 + round(age * (most - 1)) for age in AGES]
-    expected = [
-        "".join(BARS[min(max(height - 8 * below, 0), 8)] for height in heights)
-        for below in reversed(range(tall))
-    ]
-    cells = Cells(np.zeros(6, np.int64), AGES)
-    assert text(skyline(cells, wide=1, tall=tall)) == expected
-    wide = ["".join(2 * glyph + " " for glyph in row) for row in expected]
-    assert text(skyline(cells, wide=3, tall=tall)) == wide
 
 
 def test_light_grows_with_each_quarter_of_the_age() -> None:
@@ -85,23 +75,18 @@ def test_neighbouring_hues_are_a_golden_section_apart_and_differ_in_lightness() 
 
 def test_a_character_of_a_mosaic_has_two_cells_each_as_light_as_its_age() -> None:
     """The shade is 4 x hue + light; the lights are 40, 60, 80 and 100 % of the colour."""
-    numbers = np.array([[20, 21], [22, 23], [EMPTY, 20]])
-    (first,), (second,), (third,), (fourth,) = ([each] for row in mosaic(numbers) for each in row)
+    (first, second), (third, last) = mosaic(np.array([[20, 21], [22, 23], [EMPTY, 20]]))
     full = np.array(colour(5))
     for segment, lights in ((first, (0.4, 0.8)), (second, (0.6, 1.0))):
-        for found, light in zip(colours(segment), lights, strict=True):
-            np.testing.assert_allclose(found, light * full, atol=1)
-    assert colours(third) == ((45, 45, 45), None), (
-        "nothing is below the last of an odd number of rows"
-    )
-    assert colours(fourth)[1] is None
+        np.testing.assert_allclose(colours(segment), np.outer(lights, full), atol=1)
+    assert colours(third) == ((45, 45, 45), None), "nothing is below an odd number of rows"
+    assert colours(last)[1] is None
 
 
 def test_a_cell_of_two_columns_has_one_row_and_a_cell_of_four_has_two() -> None:
     cells = Cells(np.array([1, 2, 3, 4]), np.zeros(4))
     for scale, high in ((1, 1), (2, 2), (4, 4)):
-        rows = field(cells, columns=2, scale=scale)
-        assert text(rows) == ["▀" * 2 * scale] * high
+        assert text(field(cells, columns=2, scale=scale)) == ["▀" * 2 * scale] * high
     (upper, _), (lower, _) = field(cells, columns=2, scale=2)
     for segment, line in ((upper, 1), (lower, 3)):
         one, other = colours(segment)
@@ -127,8 +112,3 @@ def test_levels_go_in_eight_equal_steps_from_minus_one_to_one() -> None:
     assert levels(np.array(steps)) == "▁▂▃▄▅▆▇█"
     assert levels(np.array([-9.0, 9.0, -np.inf, np.inf])) == "▁█▁█"
     assert levels(np.array([np.nan])) == levels(np.array([0.0])), "an undefined value is drawn as 0"
-
-
-def test_a_row_is_padded_to_a_width_and_never_cut() -> None:
-    row = [Segment("ab"), Segment("c")]
-    assert text([padded(row, 5), padded(row, 3), padded(row, 1)]) == ["abc  ", "abc", "abc"]

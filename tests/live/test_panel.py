@@ -9,7 +9,6 @@ from primordia.live.panel import (
     Outlook,
     duration,
     heading,
-    keys,
     numbers,
     panel,
     saturation,
@@ -19,27 +18,24 @@ from tests.live.drawn import text
 from tests.live.posed import counted
 from tests.worlds import MEADOW, config
 
-RING, PACE = {"seed": 7, "cells": 1024}, "at most 3 ticks/s"
-WELL_MIXED = {**RING, "placement": {"topology": "well-mixed"}}
+PACE = "at most 3 ticks/s"
 
 
 @pytest.mark.parametrize(
-    ("settings", "size", "shape"),
+    ("topology", "worlds", "size", "shape"),
     [
-        (RING, "seed 7, 1,024 cells", "on a ring"),
-        (WELL_MIXED, "seed 7, 1,024 cells", "well-mixed"),
-        ({**RING, "placement": {"topology": "torus4"}}, "seed 7, 1,024 cells", "on a torus"),
-        ({**RING, "placement": {"topology": "torus8"}}, "seed 7, 1,024 cells", "on a torus"),
-        ({**RING, "seeds": 3}, "3 worlds, seeds 7 to 9, 1,024 cells each", "on a ring"),
-        ({**WELL_MIXED, "seeds": 1000},
-         "1,000 worlds, seeds 7 to 1006, 1,024 cells each", "well-mixed"),
+        ("ring", 1, "seed 7, 1,024 cells", "on a ring"),
+        ("torus4", 1, "seed 7, 1,024 cells", "on a torus"),
+        ("torus8", 3, "3 worlds, seeds 7 to 9, 1,024 cells each", "on a torus"),
+        ("well-mixed", 1000, "1,000 worlds, seeds 7 to 1006, 1,024 cells each", "well-mixed"),
     ],
-)  # fmt: skip
+)
 def test_the_heading_has_the_size_of_the_run_and_its_seeds(
-    settings: dict[str, Any], size: str, shape: str
+    topology: str, worlds: int, size: str, shape: str
 ) -> None:
     """The shape is left out where there is no room; the task and the time are always shown."""
-    of, clock = config(MEADOW, **settings), f"{PACE}, 1 min 5 s"
+    of = config(MEADOW, seed=7, cells=1024, seeds=worlds, placement={"topology": topology})
+    clock = f"{PACE}, 1 min 5 s"
     whole = f"meadow  {size} {shape}  {clock}"
     assert text([heading(of, PACE, 65.0, len(whole))]) == [whole]
     gap = " " * len(f" {shape} ")
@@ -85,12 +81,10 @@ def test_unknown_numbers_are_left_out_and_zeros_are_not() -> None:
     }  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("cells", "shown"),
-    [(499_999, "25 of 999,998"), (500_000, "25 of 1.0 M"), (10**7, "25 of 20.0 M")],
-)
-def test_from_a_million_cells_on_numbers_are_short(cells: int, shown: str) -> None:
-    assert numbers(counted(2, **COUNTS), cells, Outlook(None, None), None)["alive"] == shown
+def test_from_a_million_cells_on_numbers_are_short() -> None:
+    for cells, shown in ((499_999, "25 of 999,998"), (500_000, "25 of 1.0 M")):
+        found = numbers(counted(2, **COUNTS), cells, Outlook(None, None), None)
+        assert found["alive"] == shown
 
 
 def test_at_most_five_numbers_stand_side_by_side_in_columns() -> None:
@@ -124,56 +118,31 @@ def test_causes_of_death_of_all_worlds_are_ordered_by_their_counts() -> None:
     assert row == "died of  900 replaced, 30 time-limit, 30 hazard, 9 fatal"
 
 
-def bar(filled: int, length: int, shown: str) -> str:
-    return f"{'━' * filled}{'╌' * (length - filled)}  {shown}"
-
-
 @pytest.mark.parametrize(
-    ("saturated", "width", "shown"),
+    ("counts", "width", "filled", "length", "shown"),
     [
-        ([1234], 80, bar(24, 24, "saturated since tick 1,234")),
-        ([1234], 36, bar(8, 8, "saturated since tick 1,234")),
-        ([1234], 35, "saturated since tick 1,234"),
-        ([-1, 60, -1, -1], 80, bar(6, 24, "1 of 4 worlds saturated")),
-        ([0, 60, 70, -1], 80, bar(18, 24, "3 of 4 worlds saturated")),
-        ([0, 60, 70, 80], 80, bar(24, 24, "4 of 4 worlds saturated")),
-        ([-1, 60, -1, 5], 33, bar(4, 8, "2 of 4 worlds saturated")),
+        ({"saturated": [1234]}, 36, 8, 8, "saturated since tick 1,234"),
+        ({"saturated": [1234]}, 35, 0, 0, "saturated since tick 1,234"),
+        ({"saturated": [-1, 0, -1, -1]}, 80, 6, 24, "1 of 4 worlds saturated"),
+        ({"saturated": [0, 60, 70, 80]}, 80, 24, 24, "4 of 4 worlds saturated"),
+        ({"alive": [7], "calm": [500]}, 80, 0, 24, "calm: 0 of 1,000 ticks"),
+        ({"alive": [8], "calm": [500]}, 80, 12, 24, "calm: 500 of 1,000 ticks"),
+        ({"alive": [8], "calm": [2000]}, 80, 24, 24, "calm: 1,000 of 1,000 ticks"),
+        ({"alive": [7, 8], "calm": [900, 250]}, 80, 6, 24, "calmest: 250 of 1,000 ticks"),
     ],
 )
-def test_the_bar_has_the_share_of_saturated_worlds(
-    saturated: list[int], width: int, shown: str
+def test_the_bar_has_the_share_of_saturated_worlds_or_the_calm_of_full_worlds(
+    counts: dict[str, list[int]], width: int, filled: int, length: int, shown: str
 ) -> None:
-    assert text([saturation(counted(len(saturated), saturated=saturated), 8, 100, width)]) == [
-        shown
-    ]
-
-
-@pytest.mark.parametrize(
-    ("alive", "calm", "shown", "filled"),
-    [
-        ([7], [500], "calm: 0 of 1,000 ticks", 0),
-        ([8], [500], "calm: 500 of 1,000 ticks", 12),
-        ([8], [2000], "calm: 1,000 of 1,000 ticks", 24),
-        ([7, 8], [900, 250], "calmest: 250 of 1,000 ticks", 6),
-        ([7, 0], [900, 900], "calmest: 0 of 1,000 ticks", 0),
-    ],
-)
-def test_a_bar_of_24_columns_grows_only_with_the_calm_of_full_worlds(
-    alive: list[int], calm: list[int], shown: str, filled: int
-) -> None:
-    some = counted(len(alive), alive=alive, calm=calm)
-    assert text([saturation(some, 8, 1000, 80)]) == [bar(filled, 24, shown)]
-
-
-def test_only_the_given_keys_are_named() -> None:
-    """The first character of `space` is an s, too."""
-    assert text([keys("s-o?q")]) == ["space pause  s step  -+ speed  o organism  ? words  q quit  "]
+    """The bar has 8 to 24 columns; where there is no room for it, there are only words."""
+    some = counted(len(next(iter(counts.values()))), **counts)
+    bar = f"{'━' * filled}{'╌' * (length - filled)}  " if length else ""
+    assert text([saturation(some, 8, 1000, width)]) == [f"{bar}{shown}"]
 
 
 @pytest.mark.parametrize(
     ("number", "shown"),
-    [(0.4, "0"), (1, "1"), (999, "999"), (1000, "1.0 k"), (99_900, "99.9 k"), (100_000, "100 k"),
-     (999.7, "1.0 k"), (99_960, "100 k"), (999_700, "1.0 M"), (1e6, "1.0 M"),
+    [(0.4, "0"), (999, "999"), (999.7, "1.0 k"), (99_900, "99.9 k"), (99_960, "100 k"),
      (12.34e6, "12.3 M"), (1e9, "1.0 G"), (2.5e12, "2500 G")],
 )  # fmt: skip
 def test_a_prefix_stands_for_each_thousand(number: float, shown: str) -> None:
@@ -182,8 +151,8 @@ def test_a_prefix_stands_for_each_thousand(number: float, shown: str) -> None:
 
 @pytest.mark.parametrize(
     ("seconds", "shown"),
-    [(59.4, "59 s"), (59.6, "1 min 0 s"), (60, "1 min 0 s"), (3599.4, "59 min 59 s"),
-     (3599.6, "1 h 0 min"), (3600, "1 h 0 min"), (7325, "2 h 2 min"), (3.6e6 + 61, "1,000 h 1 min")],
+    [(59.4, "59 s"), (59.6, "1 min 0 s"), (3599.4, "59 min 59 s"), (3599.6, "1 h 0 min"),
+     (3.6e6 + 61, "1,000 h 1 min")],
 )  # fmt: skip
 def test_a_duration_has_its_two_largest_units(seconds: float, shown: str) -> None:
     assert duration(seconds) == shown

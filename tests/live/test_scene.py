@@ -4,14 +4,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from rich.segment import Segment
 
 from primordia.law.world import World
 from primordia.live.forms import Ring, Room, Torus
 from primordia.live.paint import Cells, mosaic
-from primordia.live.scene import Grid, Stage, _labelled, cells_of
+from primordia.live.scene import Grid, Stage, cells_of
 from primordia.phylogeny.clades import Lines
-from tests.live.drawn import colours, text
+from primordia.random.wide import wide
+from tests.live.drawn import text
 from tests.live.posed import law, posed
 
 
@@ -24,53 +24,26 @@ def old(count: int) -> Cells:
 
 
 @pytest.mark.parametrize(
-    ("cells", "width", "height", "scale"),
+    ("form", "width", "height", "scale"),
     [
-        (10, 79, 1, 7),
-        (10, 80, 1, 8),
-        (10, 99, 1, 8),
-        (80, 80, 1, 1),
-        (81, 80, 1, 0),
-        (10, 80, 0, 0),
+        (Ring(10), 79, 1, 7), (Ring(10), 99, 1, 8), (Ring(80), 80, 1, 1), (Ring(81), 80, 1, 0),
+        (Ring(10), 80, 0, 0), (Torus(4, 6), 12, 4, 2), (Torus(4, 6), 11, 9, 1),
+        (Torus(4, 6), 99, 5, 2), (Torus(4, 6), 99, 6, 3), (Torus(4, 6), 999, 99, 16),
+        (Torus(4, 6), 5, 9, 0), (Torus(4, 6), 9, 1, 0),
     ],
-)
-def test_a_cell_of_a_ring_is_as_wide_as_fits_and_at_most_eight_columns(
-    cells: int, width: int, height: int, scale: int
-) -> None:
-    assert Ring(cells).scale(Room(width, height)) == scale
-    assert Ring(cells).least == (cells, 1)
-
-
-@pytest.mark.parametrize(
-    ("room", "scale"),
-    [(Room(12, 4), 2), (Room(11, 9), 1), (Room(99, 5), 2), (Room(99, 6), 3),
-     (Room(999, 99), 16), (Room(5, 9), 0), (Room(9, 1), 0)],
 )  # fmt: skip
-def test_a_cell_of_a_torus_is_a_square_of_half_rows(room: Room, scale: int) -> None:
-    assert Torus(4, 6).scale(room) == scale
-
-
-def test_a_row_of_characters_has_two_rows_of_a_torus() -> None:
-    assert [Torus(rows, 6).least for rows in (4, 5)] == [(6, 2), (6, 3)]
+def test_a_cell_is_as_wide_as_fits(form: Any, width: int, height: int, scale: int) -> None:
+    """It has 8 columns at most on a ring. On a torus it is a square of half rows, at most 16 wide."""
+    assert form.scale(Room(width, height)) == scale
 
 
 def test_a_part_of_a_torus_is_its_first_rows_and_columns() -> None:
     cells = old(24)
     whole, nothing = Torus(4, 6).draw(cells, [], Room(9, 2))
     assert (whole, nothing) == (mosaic(np.arange(24).reshape(4, 6) * 4 + 3), "")
-    for width, height, shown in ((5, 9, "4 x 5"), (9, 1, "2 x 6")):
-        _, note = Torus(4, 6).draw(cells, [], Room(width, height))
-        assert note == f"shown: {shown} of 4 x 6 cells"
     pixels, note = Torus(4, 6).draw(cells, [], Room(5, 1))
     expected = mosaic(np.array([[0, 1, 2, 3, 4], [6, 7, 8, 9, 10]]) * 4 + 3)
     assert (pixels, note) == (expected, "shown: 2 x 5 of 4 x 6 cells")
-
-
-@pytest.mark.parametrize(("height", "rows"), [(2, 2), (4, 4), (9, 4)])
-def test_bars_have_at_most_four_rows(height: int, rows: int) -> None:
-    drawn, part = Ring(3).draw(old(3), [], Room(3, height))
-    assert text(drawn) == ["███"] * rows + [""] * (height - rows)
-    assert part == ""
 
 
 def test_the_past_of_a_ring_is_below_it_with_the_latest_moment_first() -> None:
@@ -85,6 +58,8 @@ def test_the_past_of_a_ring_is_below_it_with_the_latest_moment_first() -> None:
 @pytest.mark.parametrize(
     ("cells", "width", "height", "rows", "part"),
     [
+        (3, 3, 2, ["███"] * 2, ""),
+        (3, 3, 9, [*["███"] * 4, *[""] * 5], ""),
         (10, 4, 9, ["████", "████", "", "████", "████", "", "██", "██"], ""),
         (10, 4, 5, ["▇▇▇▇", "", "▇▇▇▇", "", "▇▇"], ""),
         (10, 4, 4, ["▇▇▇▇", "▇▇▇▇", "▇▇"], ""),
@@ -93,10 +68,10 @@ def test_the_past_of_a_ring_is_below_it_with_the_latest_moment_first() -> None:
         (2000, 1000, 1, ["▇" * 1000], "shown: the first 1,000 of 2,000 cells"),
     ],
 )
-def test_many_cells_make_several_equal_skylines(
+def test_many_cells_make_several_equal_skylines_of_at_most_four_rows(
     cells: int, width: int, height: int, rows: list[str], part: str
 ) -> None:
-    drawn, note = Ring(cells).draw(old(cells), [np.zeros(cells)], Room(width, height))
+    drawn, note = Ring(cells).draw(old(cells), [], Room(width, height))
     assert (text(drawn), note) == (rows, part)
 
 
@@ -115,9 +90,9 @@ def test_many_cells_make_several_equal_skylines(
         # Where not all worlds fit, as many are shown as fit.
         (Ring(200), 8, Room(80, 5), Grid(1, 5, Room(76, 1), 0)),
         (Ring(200), 3, Room(80, 5), Grid(1, 3, Room(76, 1), 0)),
-        (Ring(30), 9, Room(70, 3), Grid(2, 6, Room(31, 1), 0)),
-        (Torus(64, 64), 4, Room(80, 65), Grid(1, 1, Room(76, 65), 0)),
-        (Torus(64, 64), 4, Room(80, 66), Grid(1, 2, Room(76, 32), 1)),
+        (Ring(30), 9, Room(69, 3), Grid(2, 6, Room(30, 1), 0)),
+        (Torus(63, 64), 4, Room(80, 65), Grid(1, 1, Room(76, 65), 0)),
+        (Torus(63, 64), 4, Room(80, 66), Grid(1, 2, Room(76, 32), 1)),
     ],
 )  # fmt: skip
 def test_tiles_are_those_with_the_largest_cells(
@@ -125,17 +100,6 @@ def test_tiles_are_those_with_the_largest_cells(
 ) -> None:
     """Beside each drawing are four columns."""
     assert Grid.of(form, worlds, 4, room) == grid
-
-
-def test_tiles_side_by_side_are_equally_wide() -> None:
-    drawn: list[Any] = [[Segment("ab")], [Segment("abcd"), Segment("e")], []]
-
-    def widths(across: int) -> list[int]:
-        grid = Grid(across, 2, Room(6, 3), 0)
-        return [len(row) for row in text(_labelled(drawn, "7 ", " \u2713", grid))]
-
-    assert widths(across=2) == [10, 10, 10]
-    assert widths(across=1) == [6, 7, 2], "a tile that is alone in its row needs no padding"
 
 
 def three(**more: Any) -> World:
@@ -149,32 +113,33 @@ def three(**more: Any) -> World:
 
 
 def test_each_world_has_its_seed_its_own_ages_and_its_own_mark() -> None:
-    """A bar of one row has seven heights; log(9) and log(11) are about half of log(100)."""
-    world, room = three(saturated=[-1, 250, -1]), Room(9, 3)
-    scene = Stage().scene(law(4, 3), world, {}, None, room)
-    assert text(scene.rows) == [" 9 ▇·▄·", "10 ···▇ ✓", "11 ▄▄··"]
-    assert scene.legend == "height: age, colour: branch of the founder, ✓: saturated"
-    assert scene.part == ""
-    unmarked = Stage().scene(law(4, 3), three(), {}, None, room)
-    assert text(unmarked.rows) == [" 9 ▇·▄·", "10 ···▇", "11 ▄▄··"]
-    assert unmarked.legend == "height: age, colour: branch of the founder"
+    """A bar of one row has seven heights; log(9) and log(11) are about half of log(100).
 
+    Worlds that do not fit are neither drawn nor marked. Tiles side by side are equally wide.
+    """
+    world = three(saturated=[-1, 250, -1])
 
-def test_worlds_that_do_not_fit_are_neither_drawn_nor_marked() -> None:
-    world = three(saturated=[-1, -1, 0])
-    scene = Stage().scene(law(4, 3), world, {}, None, Room(12, 2))
-    assert text(scene.rows) == [" 9 ▇·▄·", "10 ···▇"]
-    assert scene.part == "shown: the first 2 of 3 worlds"
-    assert "✓" not in scene.legend
+    def scene(world: World, width: int, height: int) -> Any:
+        return Stage().scene(law(4, 3), world, {}, None, Room(width, height))
+
+    marked, plain = scene(world, 9, 3), scene(three(), 9, 3)
+    assert text(marked.rows) == [" 9 ▇·▄·", "10 ···▇ ✓", "11 ▄▄··"]
+    assert text(plain.rows) == [" 9 ▇·▄·", "10 ···▇", "11 ▄▄··"]
+    assert marked.legend == "height: age, colour: branch of the founder, ✓: saturated"
+    assert (plain.legend, plain.part) == ("height: age, colour: branch of the founder", "")
+    some = scene(three(saturated=[-1, -1, 0]), 12, 2)
+    assert (text(some.rows), some.part) == (text(plain.rows)[:2], "shown: the first 2 of 3 worlds")
+    assert some.legend == plain.legend
+    across = text(scene(world, 22, 2).rows)
+    assert across == [" 9 ▇·▄·    10 ···▇ ✓  ", "11 ▄▄··    "]
 
 
 def test_the_note_names_worlds_and_cells_that_do_not_fit() -> None:
     """Two rows hold two worlds. A label takes four columns, so 16 of 20 columns are cells."""
     world = posed([[1] * 40] * 3, [[0] * 40] * 3, [10] * 3)
-    scene = Stage().scene(law(40, 3), world, {}, None, Room(20, 2))
-    assert scene.part == "shown: the first 2 of 3 worlds; shown: the first 16 of 40 cells"
-    scene = Stage().scene(law(40, 3), world, {}, None, Room(20, 3))
-    assert scene.part == "shown: the first 16 of 40 cells"
+    worlds, cells = "shown: the first 2 of 3 worlds", "shown: the first 16 of 40 cells"
+    for height, note in ((2, f"{worlds}; {cells}"), (3, cells)):
+        assert Stage().scene(law(40, 3), world, {}, None, Room(20, height)).part == note
 
 
 def test_an_empty_row_is_below_each_tile_of_several_rows() -> None:
@@ -200,10 +165,6 @@ def test_cells_show_lines_of_descent_where_these_are_followed_and_branches_elsew
 # The past.
 
 
-def upper(scene: Any, row: int) -> list[tuple[int, ...]]:
-    return [colours(each)[0] for each in scene.rows[row]]
-
-
 def test_a_moment_is_remembered_once_and_shown_below_the_present() -> None:
     """A ring of two cells: one organism, then the other, then both."""
     stage, of, room = Stage(), law(2), Room(2, 6)
@@ -211,10 +172,9 @@ def test_a_moment_is_remembered_once_and_shown_below_the_present() -> None:
     def at(tick: int, alive: list[int]) -> World:
         return posed([alive], [[tick, tick]], [tick], branch=[[1, 2]])
 
-    first = stage.scene(of, at(1, [1, 0]), {}, None, room)
-    assert text(first.rows)[4:] == ["", ""]
-    again = stage.scene(of, at(1, [1, 0]), {}, None, room)
-    assert text(again.rows)[4:] == ["", ""], "the present is not part of the past"
+    for _ in range(2):
+        scene = stage.scene(of, at(1, [1, 0]), {}, None, room)
+        assert text(scene.rows)[4:] == ["", ""], "the present is not part of the past"
     stage.follow(of, at(2, [0, 1]), {}, 0)
     stage.follow(of, at(2, [0, 1]), {}, 0)
     last = stage.scene(of, at(3, [1, 1]), {}, None, room)
@@ -231,12 +191,9 @@ def test_the_latest_511_moments_before_the_present_are_kept() -> None:
 
 def test_each_world_has_its_own_past() -> None:
     stage, of, room = Stage(), law(4, 3), Room(4, 5)
-    for _ in range(2):
-        stage.follow(of, three(), {}, 2)
+    stage.follow(of, three(), {}, 2)
     later = three()
-    later = later._replace(
-        worlds=later.worlds._replace(tick=later.worlds.tick.plus(np.ones(3, int)))
-    )
+    later = later._replace(worlds=later.worlds._replace(tick=wide([101, 301, 11])))
     assert text(stage.scene(of, later, {}, 1, room).rows)[4] == ""
     assert stage.scene(of, later, {}, 2, room).rows[4:] == mosaic(np.array([[14, 18, -1, -1]]))
 

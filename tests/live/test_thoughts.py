@@ -1,6 +1,5 @@
 """Rows about the inside of an organism: outputs, fast weights, and the changes of its world."""
 
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -75,18 +74,10 @@ def test_an_organism_thinks_with_the_genome_of_its_cell(
     assert (memory.tolist(), senses.tolist()) == ([[*range(9)]], [[*range(4)]])
 
 
-def test_nothing_is_added_for_other_worlds() -> None:
-    plain: Any = SimpleNamespace(law=None, habitat=None)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(thoughts, "is_shown", lambda law, habitat: False)
-        assert thoughts.rows(plain, None, 0, np.zeros(2), np.zeros(0), None, 60) == []
-
-
 @pytest.mark.parametrize(
     ("shape", "width", "size"),
     [
         ((2, 8), 60, (32, 4)),  # squares of four points
-        ((2, 8), 33, (16, 2)),
         ((18, 8), 60, (5, 6)),  # many rows are reduced to six rows of characters
         ((2, 80), 33, (20, 1)),
     ],

@@ -73,8 +73,8 @@ def line_styles(arms: int) -> list[dict[str, Any]]:
     if arms > FEW_ARMS:
         lines = product(DASHES, [style.INK, *style.PALETTE, style.SOFT])
         return [{"color": colour, "linestyle": dash} for dash, colour in islice(cycle(lines), arms)]
-    shades = matplotlib.colormaps["plasma"](np.linspace(0.25, 0.88, max(arms - 1, 1)))
-    return [{"color": colour} for colour in (style.INK, *map(to_hex, shades[: arms - 1]))]
+    shades = matplotlib.colormaps["plasma"](np.linspace(0.25, 0.88, arms - 1))
+    return [{"color": colour} for colour in (style.INK, *map(to_hex, shades))]
 
 
 def _styled(compared: Comparison) -> Iterator[tuple[ComparedArm, dict[str, Any]]]:

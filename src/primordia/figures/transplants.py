@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
 
-from primordia.assays.generalists import Ancestor, Generalists
+from primordia.assays.generalists import Generalists
 from primordia.assays.transplant import FOUNDERS, Transplant
 from primordia.figures import style
 
@@ -136,7 +136,10 @@ def _shares(axes: Axes, found: Generalists, where: str) -> None:
 
 
 def _line(axes: Axes, found: Generalists, where: str) -> None:
-    """Draw the life on each island over the generations of a line; a dashed line is the best founder."""
+    """Draw the life on each island over the generations of a line.
+
+    A dashed line is the best founder. A dot is the ancestor from which on the line masters an island.
+    """
     colours = style.island_colours(found.islands)
     generation = [each.generation for each in found.line]
     gains = {island: gained for gained, island in found.gains}
@@ -146,18 +149,13 @@ def _line(axes: Axes, found: Generalists, where: str) -> None:
         best = max(found.best_founder[k], 1)
         axes.axhline(best, color=colour, linewidth=0.6, linestyle=(0, (4, 3)), alpha=0.7, zorder=0)
         if (gained := gains.get(island)) is not None:
-            _mark(axes, gained, max(gained.lived[k], 1), colour)
+            axes.plot(
+                gained.generation, max(gained.lived[k], 1), "o", color=colour, markersize=6,
+                zorder=4, markeredgecolor="white", markeredgewidth=0.8,
+            )  # fmt: skip
     style.logarithmic(axes.yaxis)
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     last = found.line[-1]
     axes.set(xlabel="generation", ylabel="ticks lived", xlim=(0, max(last.generation, 1) * 1.02))
     key = {**colours, "dashed: the best founder;  dot: masters the island from here on": style.SOFT}
     style.title(axes, f"The line of organism {last.organism:,}{where}, living on", key)
-
-
-def _mark(axes: Axes, gained: Ancestor, lived: float, colour: str) -> None:
-    """Mark the ancestor from which on a line masters an island."""
-    axes.plot(
-        gained.generation, lived, "o", color=colour, markersize=6, zorder=4,
-        markeredgecolor="white", markeredgewidth=0.8,
-    )  # fmt: skip

@@ -71,17 +71,12 @@ def pictures_of(run: Records, organism: int, world: int, count: int) -> Iterator
     life = RelivedLife.of(run, organism, world)
     rate, whole = replay.picture_rate(life), replay.parts_of(life, (0, None))
     panels = Panels(life, whole, min(ceil(count * rate / RATE), len(whole[0])))
+    yielded = 0
     for tick, (_, stretch, i) in enumerate(replay.moments(life, whole, 1, panels.follow)):
-        number = pictures_at(tick, rate)
+        # The first n ticks have ceil(n RATE / rate) pictures together.
+        number = ceil((tick + 1) * RATE / rate) - yielded
+        yielded += number
         if number or stretch.tick[i] == life.ends:
             picture = panels.under(replay.picture_of(life, stretch, i), 0, stretch, i)
         yield from repeat(picture, number)
     yield from repeat(picture)
-
-
-def pictures_at(tick: int, rate: float) -> int:
-    """Return the number of pictures of a tick, 0 or more, of a life at `rate` ticks a second.
-
-    The first n ticks, from tick 0 on, have ceil(n RATE / rate) pictures together.
-    """
-    return ceil((tick + 1) * RATE / rate) - ceil(tick * RATE / rate)

@@ -13,7 +13,7 @@ WIDTH = 4
 """pixels, the largest width of a border"""
 
 
-def between(island: np.ndarray, width: int = WIDTH) -> np.ndarray:
+def between(island: np.ndarray, width: int) -> np.ndarray:
     """Return whether each pixel lies at a border, from its island's number; bool (rows, columns)."""
     found = np.zeros(island.shape, bool)
     for near in range(1, width // 2 + 1):

@@ -1,6 +1,8 @@
-"""Pictures of a world's cells: a torus as a square grid, a ring as a circle with its past inside."""
+"""Pictures of a world's cells: a torus as a square grid, a ring as a circle with its past inside.
 
-from typing import Protocol
+Both have `cells`, the numbers of the cells that are drawn, int64 (N,), and `draw`. It takes the colours
+of these cells, uint8 (N, 3), and returns the next picture, uint8 (SIDE, SIDE, 3).
+"""
 
 import numpy as np
 
@@ -18,17 +20,7 @@ NOW, INNER = 0.06, 0.3
 hole."""
 
 
-class Shape(Protocol):
-    """The form in which a world is drawn."""
-
-    cells: np.ndarray
-    """numbers of the cells that are drawn, int64 (N,)"""
-
-    def draw(self, colours: np.ndarray) -> np.ndarray:
-        """Return the next picture, uint8 (SIDE, SIDE, 3), for the colours of the cells, uint8 (N, 3)."""
-
-
-def shape(placement: Placement, cells: int, islands: Islands | None = None) -> Shape:
+def shape(placement: Placement, cells: int, islands: Islands | None = None) -> "Grid | Ring":
     """Return the form of a world of this many cells. In a well-mixed world, places have no meaning.
 
     `islands` are those of the world; if there are several, their borders and names are drawn.
@@ -80,7 +72,7 @@ class Grid:
         return cells.repeat(self._zoom, axis=0).repeat(self._zoom, axis=1)
 
     def draw(self, colours: np.ndarray) -> np.ndarray:
-        """Return the picture; see `Shape`."""
+        """Return the next picture."""
         cells = np.where(self._real[:, None], colours, PAPER).reshape(*self._shape, 3)
         large = self._large(cells)
         if self._zoom > 3:
@@ -117,7 +109,7 @@ class Ring:
         self._latest = 0
 
     def draw(self, colours: np.ndarray) -> np.ndarray:
-        """Return the picture; see `Shape`."""
+        """Return the next picture."""
         self._latest = (self._latest - 1) % len(self._seen)
         self._seen[self._latest] = colours
         picture = self._paper.copy()

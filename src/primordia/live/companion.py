@@ -13,7 +13,6 @@ from primordia.engine.engine import Engine
 from primordia.habitats.archipelago import at, bodies_with
 from primordia.habitats.contract import AnyHabitat, Bodies, JaxHabitat
 from primordia.habitats.framed import MARGIN, PAPER
-from primordia.law.law import Law
 from primordia.law.metabolism import ONE
 from primordia.live import thoughts
 from primordia.live.forms import Room
@@ -76,7 +75,8 @@ class Companion:
             return [[Segment("nothing is alive"[: room.width], FAINT)]]
         law, (organisms, worlds) = engine.law, engine.state.world
         world, number = self._who or (0, 0)
-        habitat, island = at(engine.habitat, cell % law.cells), named_island(law, cell)
+        habitat = at(engine.habitat, cell % law.cells)
+        island = law.islands.names[int(law.islands.of_cells(cell % law.cells))]
         where = f" of world {world}" if law.worlds > 1 else ""
         where += f", on {island}" if island else ""
         title = f"organism {number:,} in cell {cell % law.cells:,}{where}"
@@ -125,11 +125,6 @@ class Companion:
             edges = (0, 0, size[0] - 1, size[1] - 1)
             ImageDraw.Draw(small).rectangle(edges, outline=CHANGED)
         return photograph(np.asarray(small))
-
-
-def named_island(law: Law, cell: int) -> str:
-    """Return the name of the island of a cell, on the axis of all worlds; "" without islands."""
-    return law.islands.names[int(law.islands.of_cells(cell % law.cells))]
 
 
 def _caption(habitat: AnyHabitat, body: Body) -> str:

@@ -1,8 +1,17 @@
-"""The forms of worlds: a ring as a skyline with its past below, a torus as a picture."""
+"""The forms of worlds: a ring as a skyline with its past below, a torus as a picture.
+
+Both forms have:
+
+    age: how age is shown
+    least: smallest numbers of columns and rows of characters in which all cells can be drawn
+    scale: the width of a cell in a room, in columns; 0 if there is no room for all cells
+    draw: all cells of a world as rows in a room, and words on the part that is shown if not all are;
+        `past` has the shades of the cells at earlier moments, the latest first
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple, Protocol
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -24,27 +33,7 @@ class Room(NamedTuple):
     height: int
 
 
-class Form(Protocol):
-    """The form in which a world of some cells is drawn."""
-
-    age: ClassVar[str]
-    """how age is shown"""
-
-    @property
-    def least(self) -> tuple[int, int]:
-        """Smallest numbers of columns and rows of characters in which all cells can be drawn."""
-
-    def scale(self, room: Room) -> int:
-        """Return how large a cell can be in a room; 0 if there is no room for all cells."""
-
-    def draw(self, cells: Cells, past: Sequence[np.ndarray], room: Room) -> tuple[list[Row], str]:
-        """Draw all cells of a world in a room, and say which part of them is shown if not all are.
-
-        `past` has the shades of the cells at earlier moments, the latest first.
-        """
-
-
-def form_of(law: Law) -> Form:
+def form_of(law: Law) -> "Ring | Torus":
     """Return the form of a law's worlds. In a well-mixed world the places have no meaning."""
     rows, columns = law.placement.shape(law.cells)
     islands = law.islands if law.islands.count > 1 else None
@@ -66,11 +55,11 @@ class Ring:
         return self.cells, 1
 
     def scale(self, room: Room) -> int:
-        """Return the width of a cell, in columns; see `Form`."""
+        """Return the width of a cell, in columns; see above."""
         return min(room.width // self.cells, WIDEST) if room.height else 0
 
     def draw(self, cells: Cells, past: Sequence[np.ndarray], room: Room) -> tuple[list[Row], str]:
-        """Draw the cells in order; see `Form`."""
+        """Draw the cells in order; see above."""
         wide = max(self.scale(room), 1)
         most = max(room.height, 1)
         count = min(-(-self.cells * wide // (room.width // wide * wide)), most)
@@ -111,11 +100,11 @@ class Torus:
         return self.columns, -(-self.rows // 2)
 
     def scale(self, room: Room) -> int:
-        """Return the width of a cell, in columns; see `Form`."""
+        """Return the width of a cell, in columns; see above."""
         return self._scale(self._beside(room)) or self._scale(room)
 
     def draw(self, cells: Cells, past: Sequence[np.ndarray], room: Room) -> tuple[list[Row], str]:
-        """Draw the cells in their places; see `Form`."""
+        """Draw the cells in their places; see above."""
         drawn, part = self._drawn(cells, room)
         if self.islands is None or not self._scale(self._beside(room)):
             return drawn, part

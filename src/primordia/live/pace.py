@@ -50,9 +50,9 @@ class Pace:
 
     def slower(self, speed: float | None) -> None:
         """Lower the limit below the present `speed`, in ticks a second; None if the speed is unknown."""
-        present = min(self.limit or np.inf, speed or UNKNOWN if self._late else np.inf)
-        if self.limit is None:
-            present = speed or UNKNOWN
+        present = speed or UNKNOWN
+        if self.limit is not None:
+            present = min(self.limit, present) if self._late else self.limit
         self.limit = max((level for level in LEVELS if level < present), default=self.limit)
         self._restart()
 

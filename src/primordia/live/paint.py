@@ -4,7 +4,7 @@ import colorsys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cache, lru_cache
-from itertools import groupby
+from itertools import groupby, repeat
 from math import log1p
 
 import numpy as np
@@ -78,40 +78,37 @@ def shades(cells: Cells) -> np.ndarray:
 
 def mosaic(numbers: np.ndarray) -> list[Row]:
     """Draw rows of shades, int64 (rows, columns); each row of characters shows two rows of shades."""
-    return _halves(numbers, _pixels)
+    return _halves(numbers, _shade)
 
 
 def photograph(pixels: np.ndarray) -> list[Row]:
     """Draw a picture, uint8 (rows, columns, 3), two of its rows in a row of characters."""
     # 4096 colours look the same as all colours, and their styles can be kept.
     red, green, blue = np.moveaxis(pixels.astype(np.int64) >> 4, -1, 0)
-    return _halves(red << 8 | green << 4 | blue, _points)
+    return _halves(red << 8 | green << 4 | blue, _point)
 
 
-def _halves(numbers: np.ndarray, style: Callable[[int, int], Style]) -> list[Row]:
-    """Draw numbers as upper and lower halves of characters, in the style of each pair."""
+def _halves(numbers: np.ndarray, tint: Callable[[int], tuple[float, float, float]]) -> list[Row]:
+    """Draw numbers as upper and lower halves of characters; `tint` has their red, green and blue."""
     if len(numbers) % 2:
         numbers = np.vstack([numbers, np.full_like(numbers[:1], OUTSIDE)])
     return [
-        _joined(["▀"] * len(upper), map(style, upper, lower))
+        _joined(["▀"] * len(upper), map(_pair, repeat(tint), upper, lower))
         for upper, lower in zip(numbers[::2].tolist(), numbers[1::2].tolist(), strict=True)
     ]
+
+
+@lru_cache(2**15)
+def _pair(tint: Callable[[int], tuple[float, float, float]], upper: int, lower: int) -> Style:
+    """Return the style of two points above each other."""
+    below = None if lower == OUTSIDE else Color.from_rgb(*tint(lower))
+    return Style(color=Color.from_rgb(*tint(upper)), bgcolor=below)
 
 
 def levels(values: np.ndarray) -> str:
     """Return a bar for each number: -1 gives the lowest bar, 1 the highest."""
     heights = np.rint((np.clip(np.nan_to_num(values), -1, 1) + 1) * 3.5).astype(int) + 1
     return "".join(EIGHTHS[height] for height in heights.tolist())
-
-
-def width_of(row: Row) -> int:
-    """Return the width of a row, in columns."""
-    return sum(len(segment.text) for segment in row)
-
-
-def padded(row: Row, width: int) -> Row:
-    """Return a row with spaces up to a width."""
-    return [*row, Segment(" " * max(width - width_of(row), 0))]
 
 
 def _joined(glyphs: list[str], styles: Iterable[Style]) -> Row:
@@ -135,21 +132,8 @@ def _style(hue: int) -> Style:
     return Style(color=Color.from_rgb(*colour(hue)))
 
 
-@cache
-def _pixels(upper: int, lower: int) -> Style:
-    """Return the style of two cells above each other, of these shades."""
-    below = None if lower == OUTSIDE else Color.from_rgb(*_shade(lower))
-    return Style(color=Color.from_rgb(*_shade(upper)), bgcolor=below)
-
-
-@lru_cache(2**14)
-def _points(upper: int, lower: int) -> Style:
-    """Return the style of two points of a picture above each other, of 4 bits for each colour."""
-    below = None if lower == OUTSIDE else Color.from_rgb(*_point(lower))
-    return Style(color=Color.from_rgb(*_point(upper)), bgcolor=below)
-
-
-def _point(number: int) -> tuple[int, int, int]:
+def _point(number: int) -> tuple[float, float, float]:
+    """Return the colour of a point of a picture, of 4 bits for each of red, green and blue."""
     return (number >> 8) * 17, (number >> 4 & 15) * 17, (number & 15) * 17
 
 

@@ -138,27 +138,6 @@ def _bar(share: float, text: str, width: int) -> Row:
     ]
 
 
-KEYS = (
-    ("space", "pause"),
-    ("s", "step"),
-    ("-+", "speed"),
-    ("w", "world"),
-    ("o", "organism"),
-    ("n", "next"),
-    ("?", "words"),
-    ("q", "quit"),
-)
-
-
-def keys(shown: str) -> Row:
-    """Return the keys with their names; `shown` has the first characters of those that mean something
-    now."""
-    known = [(key, name) for key, name in KEYS if key[0] in shown]
-    return [
-        part for key, name in known for part in (Segment(key, STRONG), Segment(f" {name}  ", FAINT))
-    ]
-
-
 def with_prefix(value: float | None) -> str:
     """Write a number with an SI prefix, such as 12.3 M; a dash if it is unknown."""
     if value is None:

@@ -10,8 +10,8 @@ from rich.segment import Segment
 
 from primordia.law.law import Law
 from primordia.law.world import World
-from primordia.live.forms import Form, Ring, Room, form_of, part_of
-from primordia.live.paint import EMPTY, FAINT, Cells, Row, padded, shades
+from primordia.live.forms import Ring, Room, Torus, form_of, part_of
+from primordia.live.paint import EMPTY, FAINT, Cells, Row, shades
 from primordia.phylogeny.clades import Lines
 from primordia.random.wide import Wide, to_host
 
@@ -41,7 +41,7 @@ class Grid(NamedTuple):
     """empty rows below a tile"""
 
     @classmethod
-    def of(cls, form: Form, worlds: int, edge: int, room: Room) -> "Grid":
+    def of(cls, form: Ring | Torus, worlds: int, edge: int, room: Room) -> "Grid":
         """Return the tiles in which cells are largest; if not all worlds fit, the others are left out.
 
         Beside each drawing are `edge` columns for its label and mark.
@@ -121,7 +121,7 @@ class Stage:
 
 def _tiles(
     world: World,
-    form: Form,
+    form: Ring | Torus,
     draw: Callable[[int, Room], tuple[list[Row], str]],
     followed: bool,
     room: Room,
@@ -157,11 +157,11 @@ def _labelled(drawn: list[Row], label: str, mark: str, grid: Grid) -> list[Row]:
         left = Segment(label if first else " " * len(label), FAINT)
         own: Row = [left, *row, Segment(mark if first else "")]
         width = grid.each.width + len(label) + 2
-        rows.append(padded(own, width) if grid.across > 1 else own)
+        rows.append(Segment.adjust_line_length(own, width) if grid.across > 1 else own)
     return rows
 
 
-def _legend(form: Form, followed: bool) -> str:
+def _legend(form: Ring | Torus, followed: bool) -> str:
     """Return the meanings of what is drawn."""
     branch = "line of descent" if followed else "branch of the founder"
     return f"{form.age}, colour: {branch}"

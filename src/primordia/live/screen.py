@@ -6,7 +6,7 @@ from itertools import zip_longest
 from rich.segment import Segment
 
 from primordia.live.forms import Room
-from primordia.live.paint import FAINT, Row, padded, width_of
+from primordia.live.paint import FAINT, Row
 from primordia.live.panel import CELL
 from primordia.live.scene import Scene
 
@@ -47,7 +47,7 @@ def composed(
     side = room._replace(width=room.width - CELL - GAP, height=max(room.height - space, 1))
     if beside and side.width >= SCENE:
         left = _scene(draw, side)
-        width = room.width - max(map(width_of, left), default=0) - GAP
+        width = room.width - max(map(Segment.get_line_length, left), default=0) - GAP
         column = room._replace(width=width, height=side.height)
         return [[]] * space + joined(left, _column(numbers, organism, column))
     if organism is None:
@@ -82,7 +82,8 @@ def _scene(draw: Callable[[Room], Scene], room: Room) -> list[Row]:
 
 def joined(left: list[Row], right: list[Row]) -> list[Row]:
     """Return two blocks of rows side by side."""
-    width = max(map(width_of, left), default=0) + GAP
+    width = max(map(Segment.get_line_length, left), default=0) + GAP
     empty: Row = []
     both = zip_longest(left, right, fillvalue=empty)
-    return [[*padded(one, width), *other] if other else one for one, other in both]
+    pad = Segment.adjust_line_length
+    return [[*pad(one, width), *other] if other else one for one, other in both]

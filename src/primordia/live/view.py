@@ -3,11 +3,10 @@
 import sys
 import time
 from signal import SIGINT, raise_signal
-from types import TracebackType
 
-from rich.console import Console, ConsoleOptions, RenderResult
+from rich.console import Console
 from rich.live import Live
-from rich.segment import Segment
+from rich.segment import Segment, SegmentLines
 
 from primordia.live.census import Census, Speed
 from primordia.live.companion import Companion
@@ -15,11 +14,11 @@ from primordia.live.descent import Descent
 from primordia.live.forms import Room
 from primordia.live.pace import Pace
 from primordia.live.paint import FAINT, Row
-from primordia.live.panel import Outlook, heading, keys, numbers, panel, saturation
+from primordia.live.panel import Outlook, heading, numbers, panel, saturation
 from primordia.live.scene import Scene, Stage
 from primordia.live.screen import composed
 from primordia.live.terminal import Keyboard
-from primordia.live.words import pages
+from primordia.live.words import keys, pages
 from primordia.printable import printable
 from primordia.runs.loop import Status
 
@@ -40,7 +39,8 @@ class View:
     def __init__(
         self, console: Console, pace: Pace | None = None, keyboard: Keyboard | None = None
     ) -> None:
-        self._console, self._pace, self._keyboard = console, pace or Pace(), keyboard
+        self._console, self._pace = console, pace or Pace()
+        self._keyboard = keyboard or Keyboard()
         self._live = Live(console=console, auto_refresh=False, redirect_stderr=sys.stderr.isatty())
         self._speed, self._stage, self._descent = Speed(), Stage(), Descent()
         self._size, self._due, self._cost, self._stale = console.size, 0.0, 0.0, False
@@ -53,20 +53,15 @@ class View:
     def __enter__(self) -> "View":
         waiting = Segment("Compiling, which takes some seconds", FAINT)
         self._live.start()
-        self._live.update(Frame([[waiting]]), refresh=True)
+        self._live.update(frame([[waiting]]), refresh=True)
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         """Draw the last state and leave it on the screen."""
         if self._status is None:
             self._live.update("")
         else:
-            self._keyboard, self._page = None, None
+            self._keyboard, self._page = Keyboard(), None
             self._draw(self._status)
         self._live.stop()
 
@@ -91,7 +86,7 @@ class View:
         assert self._status is not None
         if self._stale and seconds > self._cost:
             self._draw(self._status)
-        pressed = self._keyboard.pressed(seconds) if self._keyboard else _no_keys(seconds)
+        pressed = self._keyboard.pressed(seconds)
         for key in pressed:
             self._obey(key, self._status)
         if pressed or self._console.size != self._size:
@@ -126,17 +121,17 @@ class View:
         if self._console.size != self._size:
             self._console.clear()  # a terminal reflows its lines when its width changes
             self._size = self._console.size
-        self._live.update(Frame(self._rows(status)), refresh=True)
+        self._live.update(frame(self._rows(status)), refresh=True)
         now = time.perf_counter()
         self._cost, self._stale = now - began, False
         self._due = now + min(self._cost / self.SHARE, self.LONGEST)
 
     def _rows(self, status: Status) -> list[Row]:
         width, height = self._size.width, self._size.height - 1
-        room = Room(width, max(height - (2 if self._keyboard else 1), 1))
+        room = Room(width, max(height - (2 if self._keyboard.there else 1), 1))
         rows = [heading(status.engine.config, str(self._pace), status.wall_s, width)]
         rows += self._words(room) or self._world(status, room)
-        if self._keyboard:
+        if self._keyboard.there:
             rows += [[]] * (height - 1 - len(rows))
             rows = [*rows[: height - 1], self._keys(status)]
         return rows[:height]
@@ -189,22 +184,7 @@ class View:
         return numbers(census, law.cells, outlook, takeovers, law.islands)
 
 
-def _no_keys(seconds: float) -> str:
-    """Wait, and return that no key was pressed."""
-    if seconds:
-        time.sleep(seconds)
-    return ""
-
-
-class Frame:
-    """Rows that rich can print."""
-
-    def __init__(self, rows: list[Row]) -> None:
-        self._rows = rows
-
-    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """Yield the rows, cut to the width."""
-        for parts in self._rows:
-            row = [Segment(printable(text, kept=""), style) for text, style, _ in parts]
-            yield from Segment.adjust_line_length(row, options.max_width, pad=False)
-            yield Segment.line()
+def frame(rows: list[Row]) -> SegmentLines:
+    """Return rows that rich can print; it cuts them to the width of the terminal."""
+    spelled = ([Segment(printable(text, kept=""), style) for text, style, _ in row] for row in rows)
+    return SegmentLines(spelled, new_lines=True)

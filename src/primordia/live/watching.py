@@ -36,7 +36,7 @@ def watching(quiet: bool, speed: float | None = None) -> Iterator[Listener | Non
             Keyboard() as keyboard,
             interrupts.before_end(show_cursor),
             interrupts.before_end(keyboard.restore),
-            View(console, pace, keyboard if keyboard.there else None) as view,
+            View(console, pace, keyboard) as view,
         ):
             yield view
 

@@ -11,16 +11,17 @@ NAME = 18
 """columns of a word, with the gap after it"""
 WIDE = 100
 """largest number of columns of a word with its explanation"""
-KEYS = {
-    "space": "Pause, or go on.",
-    "s": "Live one tick, and pause.",
-    "- and +": "Go slower or faster. Full speed has no limit.",
-    "w": "Show one world alone, then the next world, then all worlds again.",
-    "o": "Show the oldest organism beside the world, or hide it.",
-    "n": "Show the next organism, from the oldest to the youngest.",
-    "?": "Show these words, then the next page, then the world again.",
-    "q": "Write a checkpoint and stop the run, as Ctrl-C does.",
-}
+KEYS = (
+    ("space", "pause", "Pause, or go on."),
+    ("s", "step", "Live one tick, and pause."),
+    ("- and +", "speed", "Go slower or faster. Full speed has no limit."),
+    ("w", "world", "Show one world alone, then the next world, then all worlds again."),
+    ("o", "organism", "Show the oldest organism beside the world, or hide it."),
+    ("n", "next", "Show the next organism, from the oldest to the youngest."),
+    ("?", "words", "Show these words, then the next page, then the world again."),
+    ("q", "quit", "Write a checkpoint and stop the run, as Ctrl-C does."),
+)
+"""Each key with its name and its explanation."""
 WORDS = {
     "tick": "One step of time: each organism senses and acts once.",
     "alive": "Living organisms, and the number of cells. A cell holds at most one organism.",
@@ -59,6 +60,15 @@ OF_ISLANDS = {
 }
 
 
+def keys(shown: str) -> Row:
+    """Return the keys with their names; `shown` has the first characters of those that mean something
+    now."""
+    known = [(key.replace(" and ", ""), name) for key, name, _ in KEYS if key[0] in shown]
+    return [
+        part for key, name in known for part in (Segment(key, STRONG), Segment(f" {name}  ", FAINT))
+    ]
+
+
 def pages(width: int, height: int, islands: bool = False) -> list[list[Row]]:
     """Return pages of keys and words with their explanations; `height` limits the rows of a page.
 
@@ -66,7 +76,8 @@ def pages(width: int, height: int, islands: bool = False) -> list[list[Row]]:
     """
     room = max(min(width, WIDE) - NAME, 8)
     found: list[list[Row]] = [[]]
-    for name, text in {**KEYS, **WORDS, **(OF_ISLANDS if islands else {})}.items():
+    keys_too = {key: text for key, _, text in KEYS}
+    for name, text in {**keys_too, **WORDS, **(OF_ISLANDS if islands else {})}.items():
         lines = wrap(text, room)
         if len(found[-1]) + len(lines) > height and found[-1]:
             found.append([])
