@@ -179,7 +179,7 @@ def rows_of(trial: Trial) -> list[dict[str, Any]]:
     folder = trial.file.parent / "results" if trial.seed >= SEED else Path("runs")
     name = f"{trial.file.stem}-{trial.method.replace(' ', '-')}-{trial.seed}.json"
     kept = folder / "searches" / name
-    settings = f"{crc32(reference(trial.file).to_toml().encode()):08x}"
+    settings = signature(reference(trial.file))
     known = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}
     if known.get("settings") != settings:
         known = {"settings": settings, "rows": searched(trial)}
@@ -188,11 +188,24 @@ def rows_of(trial: Trial) -> list[dict[str, Any]]:
     return known["rows"]
 
 
+def signature(config: Config) -> str:
+    """Return a checksum of what a search depends on: all settings, but cells and ticks as a product."""
+    cells = Config.model_fields["cells"].default
+    stop = config.stop.model_copy(update={"ticks": budget(config) // cells})
+    one = config.model_copy(update={"cells": cells, "stop": stop})
+    return f"{crc32(one.to_toml().encode()):08x}"
+
+
+def budget(config: Config) -> int:
+    """Return the organism-ticks of a world whose cells are always full."""
+    return config.cells * (config.stop.ticks or 0)
+
+
 def searched(trial: Trial) -> list[dict[str, Any]]:
     """Search, let the chosen genome play, and return a row for each way of playing."""
     device.prepare()
     config = reference(trial.file)
-    search = Search(config, trial.seed, config.cells * (config.stop.ticks or 0))
+    search = Search(config, trial.seed, budget(config))
     players = search.players(METHODS[trial.method](search)[None])
     who = {"who": trial.method, "seed": trial.seed, "lives": search.lives, "ticks": search.lived}
     rows = []
