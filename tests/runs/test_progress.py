@@ -65,9 +65,10 @@ def test_every_damaged_checkpoint_is_named(monkeypatch: pytest.MonkeyPatch) -> N
     assert resumed(monkeypatch, [])[0] == []
 
 
-@pytest.mark.parametrize("was_exact", [True, False])
-@pytest.mark.parametrize("exact", [True, False])
-@pytest.mark.parametrize("differ", [(), ("jax 1 then, 2 now",)])
+@pytest.mark.parametrize(
+    ("was_exact", "exact", "differ"),
+    [(True, True, ()), (False, True, ()), (True, False, ()), (True, True, ("jax 1 then, 2 now",))],
+)
 def test_a_run_stays_exact_if_its_habitat_is_exact_and_its_versions_are_the_same(
     was_exact: bool, exact: bool, differ: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -85,9 +86,7 @@ def test_a_run_stays_exact_if_its_habitat_is_exact_and_its_versions_are_the_same
     ("given", "limits"),
     [
         (None, LATER),
-        ({"ticks": 11}, Stop(ticks=11, births=7)),
-        ({"births": None}, Stop(ticks=9)),
-        ({"until": "saturation"}, Stop(ticks=9, births=7, until="saturation")),
+        ({"births": None, "until": "saturation"}, Stop(ticks=9, until="saturation")),
     ],
 )
 def test_each_limit_stays_until_it_is_given_again(

@@ -1,6 +1,5 @@
 """Promise 3: a crash costs time, never data."""
 
-import random
 import signal
 import time
 from pathlib import Path
@@ -18,7 +17,6 @@ from primordia.runs.arrays import world_ticks
 from primordia.runs.manifest import Progress
 from primordia.settings.limits import Stop
 from tests.commands import begin, complains, here
-from tests.trouble import flip, newest
 from tests.worlds import MILL, config
 
 TICKS, FEW = 45_000, 3_000
@@ -54,17 +52,9 @@ def digests(run: Path) -> list[str]:
     return [world["digest"] for world in info(Archive(run))["worlds"]]
 
 
-def test_checkpoint_intervals_make_no_difference(
-    mill: Path, through: dict[int, list[str]], tmp_path: Path
-) -> None:
-    run = lived(mill, tmp_path / "run", FEW, "--checkpoint-every", 0)
-    assert int(checkpoint.numbered(run)[-1].name) > 3
-    assert digests(run) == through[FEW]
-
-
 @pytest.mark.parametrize(
     ("every", "expected"),
-    [(60, [1, 5, 15, 75, 135]), (7, [1, 5, 12, 19, 26]), (0.5, [0.5, 1.0, 1.5])],
+    [(12, [1, 5, 15, 27, 39]), (7, [1, 5, 12, 19]), (0.5, [0.5, 1.0, 1.5])],
 )
 def test_a_run_can_be_looked_at_soon_after_its_start(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, every: float, expected: list[float]
@@ -101,20 +91,19 @@ def test_ticks_added_later_equal_ticks_lived_at_once(
     assert digests(run) == through[FEW]
 
 
-def killed(mill: Path, run: Path, rng: random.Random) -> int:
-    """Start a run, kill it after a random number of checkpoints, and return its exit status.
+def killed(mill: Path, run: Path) -> int:
+    """Start a run, kill it after some checkpoints, and return its exit status.
 
     While it lives, the run has one writer. It finds compiled code that a run in this process has left,
     so it is not killed while it writes such code.
     """
     process = begin("run", mill, "--ticks", TICKS, "--out", run, *SLOWLY, "--quiet")
-    wanted, deadline = rng.randrange(6), time.monotonic() + 60
+    deadline = time.monotonic() + 60
     while time.monotonic() < deadline and process.poll() is None:
         known = [path.name for path in run.glob("checkpoints/0*")]
-        if known and int(max(known)) >= wanted:
+        if known and int(max(known)) >= 3:
             break
         time.sleep(0.01)
-    time.sleep(rng.uniform(0.0, 0.02))
     process.send_signal(signal.SIGSTOP)
     try:
         complains(here("resume", run), 2, str(run), "another process")
@@ -124,14 +113,12 @@ def killed(mill: Path, run: Path, rng: random.Random) -> int:
     return process.returncode
 
 
-@pytest.mark.parametrize(
-    "seed", [0, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (1, 2))]
-)
 def test_kill_9_then_resume_equals_never_killed(
-    mill: Path, through: dict[int, list[str]], tmp_path: Path, seed: int
+    mill: Path, through: dict[int, list[str]], tmp_path: Path
 ) -> None:
+    """`test_kills.py` has many more kills."""
     run = tmp_path / "run"
-    status = killed(mill, run, random.Random(seed))
+    status = killed(mill, run)
     assert status == -signal.SIGKILL, "the run had ended, so nothing was tested"
     assert info(Archive(run))["worlds"][0]["ticks"] < TICKS
     done = here("resume", run)
@@ -155,34 +142,6 @@ def test_ctrl_c_saves_and_says_how_to_resume(
     assert done.stderr.strip() == f"Stopped and saved. Go on with: primordia resume {run}"
     assert 0 < info(Archive(run))["worlds"][0]["ticks"] < FEW
     assert here("resume", run).returncode == 0
-    assert digests(run) == through[FEW]
-
-
-def test_half_written_files_are_ignored(
-    mill: Path, through: dict[int, list[str]], tmp_path: Path
-) -> None:
-    run = lived(mill, tmp_path / "run", 1_200)
-    half = [run / "checkpoints/.writing-000007/state.npz", run / "births/.writing-000003.parquet"]
-    for junk in half:
-        junk.parent.mkdir(exist_ok=True)
-        junk.write_bytes(b"half")
-    (run / "deaths" / "000099.parquet").write_bytes(b"named by no manifest")
-    assert here("resume", run, "--ticks", FEW).returncode == 0
-    assert digests(run) == through[FEW]
-    assert not any(junk.exists() for junk in half)
-    assert not (run / "deaths" / "000099.parquet").exists()
-
-
-def test_a_damaged_newest_checkpoint_is_skipped(
-    mill: Path, through: dict[int, list[str]], tmp_path: Path
-) -> None:
-    run = lived(mill, tmp_path / "run", 2_700, "--checkpoint-every", 0)
-    state = newest(run) / "state.npz"
-    flip(state)
-    done = here("resume", run, "--ticks", FEW)
-    assert done.returncode == 0
-    assert "was not used" in done.stderr
-    assert str(state) in done.stderr
     assert digests(run) == through[FEW]
 
 
