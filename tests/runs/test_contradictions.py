@@ -29,29 +29,20 @@ DEATHS: dict[str, list[Any]] = {
 
 
 def segment(columns: dict[str, list[Any]], kind: type[BirthCause] | type[Cause]) -> pa.Table:
-    labels = [each.label for each in kind] + ["tired"]
-    codes = np.array([labels.index(word) for word in columns["cause"]], np.int8)
-    return pa.table(
-        {
-            **{
-                name: pa.array(
-                    columns[name], pa.int32() if name in ("world", "cell") else pa.int64()
-                )
-                for name in columns
-                if name != "cause"
-            },
-            "cause": pa.DictionaryArray.from_arrays(
-                pa.array(codes), labels if "tired" in columns["cause"] else labels[:-1]
-            ),
-        }
-    )
+    types = {"world": pa.int32(), "cell": pa.int32()}
+    arrays = {name: pa.array(columns[name], types.get(name, pa.int64())) for name in columns
+              if name != "cause"}  # fmt: skip
+    labels = [each.label for each in kind]
+    labels += ["tired"] if "tired" in columns["cause"] else []
+    codes = pa.array([labels.index(word) for word in columns["cause"]], pa.int8())
+    return pa.table({**arrays, "cause": pa.DictionaryArray.from_arrays(codes, labels)})
 
 
 def changed(columns: dict[str, list[Any]], row: int, **values: Any) -> dict[str, list[Any]]:
-    return {
-        name: [*each[:row], values.get(name, each[row]), *each[row + 1 :]]
-        for name, each in columns.items()
-    }
+    new = {name: list(each) for name, each in columns.items()}
+    for name, value in values.items():
+        new[name][row] = value
+    return new
 
 
 def lives_of(births: dict[str, list[Any]], deaths: dict[str, list[Any]], begins: int = 0) -> Lives:
@@ -64,7 +55,6 @@ def lives_of(births: dict[str, list[Any]], deaths: dict[str, list[Any]], begins:
     ("row", "values", "fault"),
     [
         (1, {"world": 2}, "an organism lives in a world that does not exist"),
-        (1, {"world": -1}, "an organism lives in a world that does not exist"),
         (4, {"cell": CELLS}, "organism 3 lives in a cell that does not exist"),
         (4, {"cell": -1}, "organism 3 lives in a cell that does not exist"),
         (1, {"id": -1, "parent": -2}, "organism -1 has a birth number below 0"),
@@ -72,14 +62,8 @@ def lives_of(births: dict[str, list[Any]], deaths: dict[str, list[Any]], begins:
         (3, {"tick": 31}, "organism 2 is born before the first tick, or after the last"),
         (4, {"tick": 51}, "organism 3 is born before the first tick, or after the last"),
         (4, {"parent": 3}, "organism 3 is not younger than its parent"),
-        (4, {"parent": 4}, "organism 3 is not younger than its parent"),
         (4, {"parent": None}, "organism 3 has no parent and is no founder"),
         (4, {"id": 1, "parent": 0}, "organism 1 is not recorded in order of birth"),
-        (
-            4,
-            {"id": 0, "parent": None, "cause": "founder"},
-            "organism 0 is not recorded in order of birth",
-        ),
         (3, {"cause": "tired"}, "'tired' is not a cause"),
     ],
 )
@@ -91,15 +75,11 @@ def test_an_impossible_birth_is_named(row: int, values: dict[str, Any], fault: s
 @pytest.mark.parametrize(
     ("row", "values", "fault"),
     [
-        (0, {"world": 2}, "an organism lives in a world that does not exist"),
         (1, {"world": -1}, "an organism lives in a world that does not exist"),
-        (1, {"id": 1}, "organism 1 dies without having been born"),
         (1, {"id": 3}, "organism 3 dies without having been born"),
         (0, {"id": 2}, "organism 2 dies without having been born"),
         (0, {"tick": 9}, "organism 1 dies before its birth, or after the last tick"),
-        (0, {"tick": 51}, "organism 1 dies before its birth, or after the last tick"),
         (1, {"tick": 31}, "organism 0 dies before its birth, or after the last tick"),
-        (1, {"cause": "tired"}, "'tired' is not a cause"),
     ],
 )
 def test_an_impossible_death_is_named(row: int, values: dict[str, Any], fault: str) -> None:
@@ -123,7 +103,7 @@ def test_the_first_and_the_last_tick_and_cell_are_possible() -> None:
     assert lives.cell.tolist() == [0, 1, 3, 3, 0]
 
 
-@pytest.mark.parametrize("begins", [0, 10, 11])
+@pytest.mark.parametrize("begins", [0, 10])
 def test_lives_are_on_record_from_birth_or_from_the_fork(begins: int) -> None:
     """An organism that is born in the tick of the fork is alive at the fork."""
     lives = lives_of(BIRTHS, DEATHS, begins)

@@ -50,6 +50,9 @@ def test_code_from_elsewhere_is_executed_only_when_trusted(
         primordia.load(run).policy()
     trusting = [*words(LIVING[0], run), "--trust"]
     assert here(*trusting).returncode == 0
+    oldest = primordia.load(run).oldest()
+    life = RelivedLife.of(oldest.run, oldest.id, oldest.world)
+    assert sum(len(each.tick) for each in life.stretches()) == oldest.age == 21
     forget()
     done = here(*words(LIVING[2], run))
     assert (done.returncode, done.stderr) == (0, ""), "trust is kept for other commands"
@@ -57,15 +60,6 @@ def test_code_from_elsewhere_is_executed_only_when_trusted(
     forget()
     (run / "code" / "pond_depth.py").write_text("DEPTH = 4.0\n")
     complains(here("verify", run), 1, "pond_depth.py was changed or damaged")
-
-
-def test_a_life_of_code_from_elsewhere_is_lived_again(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    run = elsewhere(folder, begun(folder), monkeypatch)
-    oldest = primordia.load(run, trust=True).oldest()
-    life = RelivedLife.of(oldest.run, oldest.id, oldest.world)
-    assert sum(len(each.tick) for each in life.stretches()) == oldest.age == 21
 
 
 def test_looking_executes_no_code_of_a_run(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -137,17 +131,17 @@ def test_a_run_of_a_stranger_chooses_no_function_of_an_installed_package(
     complains(here(*words(LIVING[0], run), "--trust"), 2, "pytest:main has no default_params")
 
 
-@pytest.mark.parametrize("name", ["gymnasium", "gymnax"])
-@pytest.mark.parametrize("env", ["evil:", "evil:Pond", "IPython.__main__:", "gymnax.utils:x"])
+@pytest.mark.parametrize(
+    ("name", "env"),
+    [("gymnasium", "evil:"), ("gymnasium", "IPython.__main__:"), ("gymnax", "evil:Pond")],
+)
 def test_every_module_that_a_run_of_a_stranger_names_is_asked_for(
-    env: str, name: str, folder: Path
+    name: str, env: str, folder: Path
 ) -> None:
     run = begun(folder)
     forged(run, name=name, env=env)
     (folder / "evil.py").write_text("open('executed', 'w')")
-    assert (
-        here(*words(LIVING[0], run)).returncode == 2
-    )  # the code is new, so `resume` stops earlier
+    assert here(*words(LIVING[0], run)).returncode == 2, "it is new, so `resume` stops earlier"
     for command in LIVING[1:]:
         complains(here(*words(command, run)), 2, env.partition(":")[0], "--trust")
     assert not (folder / "executed").exists()
