@@ -3,7 +3,6 @@
 from dataclasses import fields
 from itertools import product
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -16,11 +15,8 @@ from primordia.errors import InputError
 from primordia.history.foraging import foraging
 from primordia.history.rebuilding import rebuild_all
 from primordia.runs import loop
-from primordia.runs.manifest import Progress
 from primordia.runs.opening import opened, split_name
-from primordia.runs.records import Records
 from primordia.runs.schema import TABLES
-from primordia.settings.limits import Stop
 from tests.commands import complains, here
 from tests.worlds import MILL, config
 
@@ -103,19 +99,6 @@ def test_runs_are_compared_as_arms(runs: Path) -> None:
     for one, other in zip(compared.arms, again.arms, strict=True):
         for outcome, measured in one.measured.items():
             np.testing.assert_array_equal(other.measured[outcome].value, measured.value)
-
-
-@pytest.mark.parametrize("exact", [True, False])
-def test_an_arm_is_exact_if_all_its_runs_are(exact: bool) -> None:
-    """It has the limits that all its runs share."""
-    limits = Stop(ticks=9, births=None, until=None), Stop(ticks=9, births=5, until=None)
-    each = [
-        Progress(limits=limits[0], wall_s=2, exact=True, restarts=1),
-        Progress(limits=limits[1], wall_s=3, exact=exact, restarts=4),
-    ]
-    arm: Any = Records.__new__(Records)
-    arm._runs = [SimpleNamespace(progress=progress) for progress in each]
-    assert arm.progress == Progress(limits=limits[0], wall_s=5, exact=exact, restarts=5)
 
 
 def test_a_name_is_told_from_a_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,21 +1,16 @@
 """Arrays of checkpoints: settings give the type and shape of each, and all bits are read back."""
 
 from pathlib import Path
-from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
-import pyarrow as pa
 import pytest
 
 from primordia.errors import Trouble
 from primordia.runs import arrays
 from primordia.runs.arrays import Arrays, read_count, world_ticks
 from primordia.runs.description import Description
-from primordia.runs.records import Records
 from primordia.runs.schema import Schema
 from primordia.runs.shapes import Expected
-from tests.synthetic import worlds_of
 from tests.worlds import config
 
 SETTINGS = config("CartPole-survival", seeds=2, cells=3, brain={"hidden": 4})
@@ -159,25 +154,3 @@ def test_counts_have_a_high_and_a_low_word() -> None:
              "world.worlds.tick.lo": np.array([5, 2**32 - 1, 2**32 - 1], np.uint32)}  # fmt: skip
     assert world_ticks(words).tolist() == [5, 2**33 - 1, 2**64 - 1]
     assert read_count(words, "world.worlds.tick").dtype == np.uint64
-
-
-def test_notes_and_mates_of_a_life_are_those_of_its_birth() -> None:
-    """Births of two worlds are recorded in order of events. One life is left out."""
-    lives = worlds_of(
-        [(0, 9, True), (5, 9, True), (6, 9, False)], [(0, 9, True), (3, 1, True)], until=40
-    )
-    births = pa.table({
-        "world": pa.array([1, 0, 1, 0, 0], pa.int32()), "id": [0, 0, 1, 1, 2],
-        "mate": pa.array([None, None, 0, None, 1]), "step": pa.array([10, 0, 11, 1, 2], pa.int32()),
-        "way": pa.array([-10, -1, -11, -2, -3], pa.int32()),
-    })  # fmt: skip
-    run: Any = SimpleNamespace(
-        schema=Schema.described(3, ABOUT), table=lambda _, columns: births.select(columns)
-    )
-    run._of_births = lambda *given: Records._of_births(run, *given)
-    some = lives.take(np.array([0, 2, 3, 4]))
-    assert Records.mates_of(run, some).tolist() == [-1, 1, -1, 0]
-    assert Records.notes_of(run, some).tolist() == [[0, -1], [2, -3], [10, -10], [11, -11]]
-    run.schema = Schema(3, mates=False, notes=(), rates=(), tallies=())
-    assert Records.mates_of(run, some).tolist() == [-1] * 4
-    assert Records.notes_of(run, some).shape == (4, 0)

@@ -87,15 +87,27 @@ def chunk(number: int) -> list[Step]:
     return [(f"events {number}",), (f"faults {number}",), ("listen", CHUNK_S * number)]
 
 
-def test_each_chunk_is_recorded_and_reported_before_it_is_saved(patched: Any) -> None:
-    """The first checkpoint is due 1 s after the first chunk, and the second one 4 s later."""
-    run = Invented(12)
-    first, second = ("save", "state 3", 1.5), ("save", "state 11", 5.5)
-    expected = [step for number in range(1, 4) for step in chunk(number)] + [first]
-    expected += [step for number in range(4, 12) for step in chunk(number)] + [second]
-    assert patched(run, 60.0, noting(run)) == [
-        *expected, *chunk(12), ("finish",), ("save", "state 12", 6.0)
-    ]  # fmt: skip
+@pytest.mark.parametrize(
+    ("every", "saves"), [(60.0, [3, 11, 31, 151]), (7.0, [3, 11, 25, 39]), (0.5, [*range(2, 9)])]
+)
+def test_each_chunk_is_recorded_and_reported_before_it_is_saved(
+    every: float, saves: list[int], patched: Any
+) -> None:
+    """Early checkpoints are due 1 s, 4 s and 10 s after the one before, so that a run can be read soon.
+
+    Time begins after the first chunk.
+    """
+    last = saves[-1] + 1
+    expected = []
+    for number in range(1, last + 1):
+        expected += chunk(number)
+        if number in saves:
+            expected.append(("save", f"state {number}", CHUNK_S * number))
+    end = [("finish",), ("save", f"state {last}", CHUNK_S * last)]
+    if every == 0.5:
+        expected.append(("save", f"state {last}", CHUNK_S * last))
+    run = Invented(last)
+    assert patched(run, every, noting(run)) == expected + end
 
 
 @pytest.mark.parametrize("press", [0, 1, 2])

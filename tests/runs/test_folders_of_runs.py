@@ -9,7 +9,6 @@ import pytest
 
 from primordia.errors import InputError, Trouble
 from primordia.runs import directory, faults, loop
-from primordia.settings.limits import Stop
 from tests.worlds import MEADOW, config
 
 
@@ -93,19 +92,6 @@ def test_only_a_run_that_can_go_on_stays_after_an_error_at_its_start(
     assert (run / "config.toml").exists() == run.exists() == stays
 
 
-def test_a_run_that_ends_before_its_first_checkpoint_leaves_nothing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def fail(*_: Any) -> None:
-        assert (tmp_path / "run" / "versions.json").exists()
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(loop, "drive", fail)
-    with pytest.raises(KeyboardInterrupt):
-        loop.start(config(MEADOW), tmp_path / "run")
-    assert not (tmp_path / "run").exists()
-
-
 @pytest.mark.parametrize("format", [1, 2, 3])
 def test_runs_of_another_format_are_refused(format: int, tmp_path: Path) -> None:
     (tmp_path / "versions.json").write_text(json.dumps({"format": format}))
@@ -148,33 +134,6 @@ def test_a_run_goes_on_only_with_the_settings_of_its_beginning(
     says = f"was begun with other settings: {differs}; choose another --out"
     with pytest.raises(InputError, match=says):
         directory.check_same_settings(config(MEADOW, **now), tmp_path)
-
-
-def test_begin_or_resume_passes_on_all_its_arguments(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A limit that is not given again is removed."""
-    calls = list[tuple[Any, ...]]()
-    limits = {"ticks": None, "births": 5, "until": "saturation"}
-    settings = config(MEADOW).model_copy(update={"stop": Stop(**limits)})
-
-    def listen(_: loop.Status) -> None: ...
-
-    def resumed(*given: Any, **named: Any) -> list[str]:
-        calls.append((*given, named))
-        return ["a note"]
-
-    monkeypatch.setattr(loop, "start", lambda *given, **named: calls.append((*given, named)))
-    monkeypatch.setattr(loop, "resume", resumed)
-    monkeypatch.setattr(directory, "check_same_settings", lambda *given: calls.append(given))
-    passed = {"checkpoint_every": 3.0, "listen": listen}
-    for there in (True, False):
-        monkeypatch.setattr(directory, "clear_unbegun", lambda _, there=there: there)
-        notes = loop.begin_or_resume(settings, tmp_path, **passed)
-        assert notes == ([] if there else ["a note"])
-    assert calls == [
-        (settings, tmp_path, passed), (settings, tmp_path), (tmp_path, limits, passed)
-    ]  # fmt: skip
 
 
 @pytest.mark.parametrize("seconds", [-0.1, float("nan")])

@@ -152,24 +152,6 @@ def test_ctrl_c_before_a_fork_has_begun_leaves_an_empty_folder(
     assert done.stderr.strip() == f"Stopped before {tmp_path} had begun"
 
 
-@pytest.mark.slow
-def test_another_seed_is_another_future_of_the_same_past(mill: Path, tmp_path: Path) -> None:
-    two = primordia.load(mill).fork(800, tmp_path / "two", seed=5).path
-    again = primordia.load(mill).fork(800, tmp_path / "again", seed=5).path
-    assert same(two, again)
-    assert not same(mill, two)
-    here_, there = (living(run, 800) for run in (mill, two))
-    assert here_ == there
-    assert len(here_) > 3
-
-
-def living(run: Path, at: int) -> set[tuple[int, ...]]:
-    lives = Archive(run).lives
-    living_then = (lives.born <= at) & ((lives.ended > at) | ~lives.died)
-    columns = (lives.id, lives.parent, lives.cell, lives.born, lives.birth_cause)
-    return set(zip(*(column[living_then].tolist() for column in columns), strict=True))
-
-
 def test_forks_of_forks_keep_the_promises(mill: Path, tmp_path: Path) -> None:
     """They can be verified and resumed, and the genomes of all organisms can be rebuilt."""
     changes = {"mutation": {"scale": 0.02}, "metabolism": {"gain": 9.0}}

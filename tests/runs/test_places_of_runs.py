@@ -13,8 +13,10 @@ from primordia.errors import InputError
 from primordia.runs import opening
 from primordia.runs.archive import run_of
 from primordia.runs.arm import _refuse_twice
+from primordia.runs.manifest import Progress
 from primordia.runs.opening import arm_paths, only, run_paths
 from primordia.runs.records import Records, _Joined, _shifted
+from primordia.settings.limits import Stop
 from tests.synthetic import worlds_of
 
 
@@ -88,6 +90,7 @@ def test_runs_of_an_arm_are_in_order_of_seeds_and_the_arm_has_a_name(
 
 def invented(path: str, worlds: int, start: int) -> Any:
     """Return a run of some worlds with two cells each, with arrays and no records."""
+    limits = Stop(ticks=9, births=start or None, until=None)
     state: dict[str, np.ndarray] = {
         "world.worlds.calm": np.arange(start, start + worlds, dtype=np.int32),
         "world.organisms.energy": np.arange(2 * start, 2 * (start + worlds)),
@@ -96,6 +99,7 @@ def invented(path: str, worlds: int, start: int) -> Any:
     return SimpleNamespace(
         path=Path(path), config=SimpleNamespace(seeds=worlds), state=state,
         origin={name: -array for name, array in state.items()}, release=lambda: None,
+        progress=Progress(limits=limits, wall_s=2, exact=path != "b", restarts=1),
         versions={"jax": "1", path: "2"}, damaged=[f"{path} 1", f"{path} 2"],
         row_digests={"births": np.full((worlds, 2), start)},
         lives=worlds_of(*[[(0, 9, True)]] * worlds, until=9),
@@ -128,6 +132,8 @@ def test_an_arm_has_the_versions_damage_rows_and_lives_of_all_its_runs() -> None
     arm: Any = Records.__new__(Records)
     arm.path, arm._runs, arm.firsts = Path("arm"), (*RUNS,), FIRSTS
     assert arm.versions == {"jax": "1", "a": "2, none", "b": "none, 2", "c": "none, 2"}
+    limits = Stop(ticks=9, births=None, until=None)  # those that all runs share
+    assert arm.progress == Progress(limits=limits, wall_s=6, exact=False, restarts=3)
     assert arm.damaged == ["a 1", "a 2", "b 1", "b 2", "c 1", "c 2"]
     assert arm.row_digests["births"][:, 1].tolist() == [0, 0, 2, 2, 2, 5]
     assert arm.paths == (Path("a"), Path("b"), Path("c"))

@@ -3,8 +3,6 @@
 import signal
 import time
 from pathlib import Path
-from types import SimpleNamespace
-from typing import Any
 
 import pytest
 
@@ -14,8 +12,6 @@ from primordia.history.info import info
 from primordia.runs import checkpoint, directory, loop
 from primordia.runs.archive import Archive
 from primordia.runs.arrays import world_ticks
-from primordia.runs.manifest import Progress
-from primordia.settings.limits import Stop
 from tests.commands import begin, complains, here
 from tests.worlds import MILL, config
 
@@ -50,29 +46,6 @@ def lived(mill: Path, run: Path, ticks: int, *words: object) -> Path:
 
 def digests(run: Path) -> list[str]:
     return [world["digest"] for world in info(Archive(run))["worlds"]]
-
-
-@pytest.mark.parametrize(
-    ("every", "expected"),
-    [(12, [1, 5, 15, 27, 39]), (7, [1, 5, 12, 19]), (0.5, [0.5, 1.0, 1.5])],
-)
-def test_a_run_can_be_looked_at_soon_after_its_start(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, every: float, expected: list[float]
-) -> None:
-    """A run of a clock that ticks every half a second; nothing is written.
-
-    Each checkpoint holds the time spent: that before the run was resumed, and that since then.
-    """
-    now, saved = [0.0], list[tuple[float, float]]()
-    progress = Progress(limits=Stop(), wall_s=20.0, exact=True)
-    monkeypatch.setattr(time, "perf_counter", lambda: now[0])
-    monkeypatch.setattr(checkpoint, "save", lambda *_: saved.append((now[0], progress.wall_s)))
-    nothing: Any = SimpleNamespace(arrays=dict)
-    saver = loop.Saver(nothing, nothing, tmp_path, progress, every, 0.0, lambda: None)
-    while now[0] < expected[-1]:
-        now[0] += 0.5
-        saver.save_if_due()
-    assert saved == [(at, 20 + at) for at in expected]
 
 
 def test_ticks_added_later_equal_ticks_lived_at_once(
@@ -126,25 +99,6 @@ def test_kill_9_then_resume_equals_never_killed(
     assert digests(run) == through[TICKS]
 
 
-def test_ctrl_c_saves_and_says_how_to_resume(
-    mill: Path, through: dict[int, list[str]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """`tests/trouble/test_interrupts.py` interrupts processes."""
-    run = tmp_path / "run"
-
-    def press(_: object, __: loop.Status) -> None:
-        signal.raise_signal(signal.SIGINT)
-
-    with monkeypatch.context() as patch:
-        patch.setattr("primordia.live.watching.Plain.__call__", press)
-        done = here("run", mill, "--ticks", FEW, "--out", run)
-    assert done.returncode == 130
-    assert done.stderr.strip() == f"Stopped and saved. Go on with: primordia resume {run}"
-    assert 0 < info(Archive(run))["worlds"][0]["ticks"] < FEW
-    assert here("resume", run).returncode == 0
-    assert digests(run) == through[FEW]
-
-
 def test_verify_finds_no_difference_in_a_good_run(mill: Path, tmp_path: Path) -> None:
     done = here("verify", lived(mill, tmp_path / "run", 1_200))
     assert (done.returncode, done.stderr) == (0, "")
@@ -169,8 +123,19 @@ def test_what_a_killed_start_has_left_is_no_obstacle(mill: Path, tmp_path: Path)
     (tmp_path / "run" / "births").mkdir(parents=True)
     (tmp_path / "run" / "config.toml").write_text("half")
     (tmp_path / "run" / directory.UNBEGUN).touch()
-    run = primordia.run(str(mill), tmp_path / "run", stop={"ticks": 5}, resume=True)
-    assert run.info()["worlds"][0]["ticks"] == 5
+    heard: list[float] = []
+    for ticks, births in ((5, 10_000), (9, None)):  # begun, and gone on with
+        run = primordia.run(
+            str(mill), tmp_path / "run", stop={"ticks": ticks, "births": births}, resume=True,
+            checkpoint_every=0.0, listen=lambda status: heard.append(status.wall_s),
+        )  # fmt: skip
+        assert run.info()["worlds"][0]["ticks"] == ticks
+        assert run.info()["limits"]["births"] == births, (
+            "a limit that is not given again is removed"
+        )
+    assert int(checkpoint.numbered(run.path)[-1].name) == len(heard) + 1, (
+        "after all chunks and ends"
+    )
     with pytest.raises(InputError, match="needs the directory of the run"):
         primordia.run("CartPole-survival", resume=True)
     (tmp_path / "other").mkdir()

@@ -21,23 +21,6 @@ from tests.strangers import LIVING, POND, begun, elsewhere, forget, words
 from tests.trouble import newest, reseal
 
 
-def test_a_bundle_executes_nothing_until_it_is_trusted(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    run = begun(folder)
-    file = primordia.load(run).bundle(folder / "sent.zip")
-    shutil.move(file, folder.parent / "sent.zip")
-    elsewhere(folder, run, monkeypatch)
-    for command in (["info"], ["plot", "--out", "figures", "--figure", "ages"]):
-        assert here(command[0], folder.parent / "sent.zip", *command[1:]).returncode == 0
-    assert "pond" not in sys.modules
-    stopped = here("relive", folder.parent / "sent.zip", 3)
-    complains(stopped, 2, "executes code that Primordia does not know")
-    assert "pond" not in sys.modules
-    done = here("relive", folder.parent / "sent.zip", 3, "--trust")
-    assert done.returncode == 0, done.stderr
-
-
 def test_code_from_elsewhere_is_executed_only_when_trusted(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -74,6 +57,8 @@ def test_looking_executes_no_code_of_a_run(folder: Path, monkeypatch: pytest.Mon
         ["export", run, run.parent / "genome.safetensors"],
         ["phylogeny", run, "--out", run.parent / "phylogeny.csv"],
         ["compare", run, twin, "--out", run.parent],
+        ["bundle", run, run.parent / "sent.zip"],
+        ["info", run.parent / "sent.zip"],
     ):
         done = here(*command)
         assert done.returncode == 0, done.stderr
