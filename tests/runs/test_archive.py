@@ -2,6 +2,7 @@
 
 from collections import Counter
 from pathlib import Path
+from unittest.mock import MagicMock
 
 import pytest
 
@@ -74,20 +75,15 @@ def test_a_call_from_python_opens_its_run_once(mill: Path, checked: Counter[str]
 def test_the_law_is_built_once_and_only_for_living(
     mill: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    built, build = [], Config.build_law
-
-    def building(self: Config, habitat: object) -> object:
-        built.append(habitat)
-        return build(self, habitat)
-
-    monkeypatch.setattr(Config, "build_law", building)
+    build = MagicMock(side_effect=Config.build_law)
+    monkeypatch.setattr(Config, "build_law", lambda *given: build(*given))
     run = Archive(mill)
     foraging(run)
     rebuild_all(run, [(0, 0), (0, 1)])
-    assert not built
+    assert build.call_count == 0
     for world in (0, 1):
         RelivedLife.of(run, 0, world)
-    assert len(built) == 1
+    assert build.call_count == 1
 
 
 def test_an_opened_run_does_not_see_it_grow(tmp_path: Path) -> None:

@@ -1,16 +1,21 @@
 """Arrays of checkpoints: settings give the type and shape of each, and all bits are read back."""
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
+import pyarrow as pa
 import pytest
 
 from primordia.errors import Trouble
 from primordia.runs import arrays
 from primordia.runs.arrays import Arrays, read_count, world_ticks
 from primordia.runs.description import Description
+from primordia.runs.records import Records
 from primordia.runs.schema import Schema
 from primordia.runs.shapes import Expected
+from tests.synthetic import worlds_of
 from tests.worlds import config
 
 SETTINGS = config("CartPole-survival", seeds=2, cells=3, brain={"hidden": 4})
@@ -22,7 +27,7 @@ ABOUT = Description(
 
 def fitting() -> dict[str, np.ndarray]:
     """Return the arrays of two worlds with three cells each, written out by hand."""
-    counts = {f"world.worlds.{name}": (2,) for name in (
+    counts: dict[str, tuple[int, ...]] = {f"world.worlds.{name}": (2,) for name in (
         "seed", "tick", "births", "extinctions", "organism_ticks", "food", "saturated",
         "saturated_births", "fixed", "fixed_births")}  # fmt: skip
     counts |= {"world.worlds.deaths": (2, 7)}
@@ -154,3 +159,16 @@ def test_counts_have_a_high_and_a_low_word() -> None:
              "world.worlds.tick.lo": np.array([5, 2**32 - 1, 2**32 - 1], np.uint32)}  # fmt: skip
     assert world_ticks(words).tolist() == [5, 2**33 - 1, 2**64 - 1]
     assert read_count(words, "world.worlds.tick").dtype == np.uint64
+
+
+def test_notes_of_a_life_are_those_of_its_birth() -> None:
+    """Births of two worlds are recorded in order of events. One life is left out."""
+    births = pa.table({
+        "world": pa.array([1, 0, 1, 0, 0], pa.int32()), "id": [0, 0, 1, 1, 2],
+        "step": pa.array([10, 0, 11, 1, 2]), "way": pa.array([-10, -1, -11, -2, -3]),
+    })  # fmt: skip
+    run: Any = SimpleNamespace(schema=SimpleNamespace(notes=("step", "way")))
+    run.table = lambda _, columns: births.select(columns)
+    run._of_births = lambda *given: Records._of_births(run, *given)
+    lives = worlds_of([(0, 9, True)] * 3, [(0, 9, True)] * 2, until=40).take(np.array([0, 2, 3, 4]))
+    assert Records.notes_of(run, lives).tolist() == [[0, -1], [2, -3], [10, -10], [11, -11]]

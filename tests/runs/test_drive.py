@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from primordia.runs import checkpoint, faults, loop
+from primordia.runs import checkpoint, directory, loop
 from primordia.runs.manifest import Progress
 from primordia.settings.limits import Stop
 
@@ -64,7 +64,7 @@ def patched(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Any:
             run.log.append(("save", state, now.wall_s - EARLIER_S))
 
         monkeypatch.setattr(checkpoint, "save", save)
-        monkeypatch.setattr(faults, "note", lambda _, lines: run.log.append((lines,)))
+        monkeypatch.setattr(directory, "note_faults", lambda _, lines: run.log.append((lines,)))
         monkeypatch.setattr(time, "perf_counter", lambda: CHUNK_S * run.done)
         engine: Any = run
         loop.drive(engine, engine, tmp_path, progress, every, listen)
@@ -88,7 +88,7 @@ def chunk(number: int) -> list[Step]:
 
 
 @pytest.mark.parametrize(
-    ("every", "saves"), [(60.0, [3, 11, 31, 151]), (7.0, [3, 11, 25, 39]), (0.5, [*range(2, 9)])]
+    ("every", "saves"), [(60.0, [3, 11, 31, 151]), (7.0, [3, 11, 25, 39]), (1.0, [3, 5, 7, 9])]
 )
 def test_each_chunk_is_recorded_and_reported_before_it_is_saved(
     every: float, saves: list[int], patched: Any
@@ -97,17 +97,13 @@ def test_each_chunk_is_recorded_and_reported_before_it_is_saved(
 
     Time begins after the first chunk.
     """
-    last = saves[-1] + 1
-    expected = []
+    last, expected = saves[-1] + 1, list[Step]()
     for number in range(1, last + 1):
-        expected += chunk(number)
-        if number in saves:
-            expected.append(("save", f"state {number}", CHUNK_S * number))
-    end = [("finish",), ("save", f"state {last}", CHUNK_S * last)]
-    if every == 0.5:
-        expected.append(("save", f"state {last}", CHUNK_S * last))
+        saved = [("save", f"state {number}", CHUNK_S * number)] if number in saves else []
+        expected += [*chunk(number), *saved]
+    expected += [("finish",), ("save", f"state {last}", CHUNK_S * last)]
     run = Invented(last)
-    assert patched(run, every, noting(run)) == expected + end
+    assert patched(run, every, noting(run)) == expected
 
 
 @pytest.mark.parametrize("press", [0, 1, 2])

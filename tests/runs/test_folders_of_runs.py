@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from primordia.errors import InputError, Trouble
-from primordia.runs import directory, faults, loop
+from primordia.runs import directory, loop
 from tests.worlds import MEADOW, config
 
 
@@ -148,10 +148,10 @@ def test_seconds_between_checkpoints_are_0_or_more(seconds: float, tmp_path: Pat
 
 
 def test_each_failure_is_a_line_at_the_end_of_a_file(tmp_path: Path) -> None:
-    faults.note(tmp_path, [])
+    directory.note_faults(tmp_path, [])
     assert not (tmp_path / "faults.txt").exists()
-    faults.note(tmp_path, ["first", "second\x1b\nand more"])
-    faults.note(tmp_path, ["third"])
+    directory.note_faults(tmp_path, ["first", "second\x1b\nand more"])
+    directory.note_faults(tmp_path, ["third"])
     lines = (tmp_path / "faults.txt").read_text().splitlines()
     assert (len(lines), lines[0], lines[2]) == (3, "first", "third")
     assert "\x1b" not in lines[1]
@@ -159,5 +159,5 @@ def test_each_failure_is_a_line_at_the_end_of_a_file(tmp_path: Path) -> None:
     (tmp_path / "link").mkdir()
     (tmp_path / "link" / "faults.txt").symlink_to(tmp_path / "target")
     with pytest.raises(InputError, match=f"{tmp_path / 'link' / 'faults.txt'} is a symbolic link"):
-        faults.note(tmp_path / "link", ["first"])
+        directory.note_faults(tmp_path / "link", ["first"])
     assert (tmp_path / "target").read_text() == ""

@@ -17,7 +17,7 @@ from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import code
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
-from tests.strangers import LIVING, POND, begun, elsewhere, forget, words
+from tests.strangers import LIVING, POND, TASK, begun, elsewhere, forget, words
 from tests.trouble import newest, reseal
 
 
@@ -71,17 +71,13 @@ def test_looking_executes_no_code_of_a_run(folder: Path, monkeypatch: pytest.Mon
 
 
 @pytest.mark.slow
-def test_parts_in_several_files_are_trusted_together(
+def test_a_mutation_is_trusted_with_its_habitat(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Also where the trust cannot be stored, as in a home folder that is read-only."""
-    mutation = (
-        "from primordia.mutations.gaussian import Gaussian\n\n\nclass Own(Gaussian):\n    pass\n"
-    )
-    (folder / "pond_mutation.py").write_text(mutation)
-    (folder / "task.toml").write_text(
-        'mutation = { kind = "pond_mutation:Own" }\n' + (folder / "task.toml").read_text()
-    )
+    base = "from primordia.mutations.gaussian import Gaussian"
+    (folder / "pond_mutation.py").write_text(f"{base}\n\n\nclass Own(Gaussian):\n    pass\n")
+    (folder / "task.toml").write_text(f'mutation = {{ kind = "pond_mutation:Own" }}\n{TASK}')
     run = elsewhere(folder, begun(folder), monkeypatch)
     sys.modules.pop("pond_mutation")
     genome = run.parent / "genome.safetensors"
