@@ -103,7 +103,7 @@ def test_the_digest_of_a_world_depends_on_every_number_of_its_living(lived: Live
         place = array[row].reshape(-1)
         place[-1:] = ~place[-1:] if array.dtype == bool else place[-1:] + 1
         array[row] = place.reshape(array[row].shape)
-        after = digests(records, {**arrays, name: array}, 2)
+        after = digests(records, {**arrays, name: array}, 2, lived.config.islands)
         return [old == new for old, new in zip(before, after, strict=True)]
 
     for name, array in arrays.items():
@@ -114,7 +114,7 @@ def test_the_digest_of_a_world_depends_on_every_number_of_its_living(lived: Live
         if not of_world and name != "world.organisms.alive":
             assert now(name, cells + empty[0]) == [True, True], name
     for name, sums in records.items():
-        after = digests({**records, name: sums + np.uint64(1)}, arrays, 2)
+        after = digests({**records, name: sums + np.uint64(1)}, arrays, 2, lived.config.islands)
         assert all(old != new for old, new in zip(before, after, strict=True)), name
 
 

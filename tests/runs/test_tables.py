@@ -15,6 +15,7 @@ from primordia.runs import digest, recorder, segment
 from primordia.runs.digest import digests, row_hashes
 from primordia.runs.recorder import Recorder
 from primordia.runs.schema import TABLES, Schema
+from tests.worlds import MEADOW, config
 
 CELLS = 10
 SCHEMA = Schema(CELLS, mates=True, notes=("step",), rates=("hazard",), tallies=("score_mean",))
@@ -211,9 +212,10 @@ def test_the_digest_of_a_state_does_not_depend_on_blocks_or_tails(
     arrays = {"world.organisms.alive": alive, "world.organisms.energy": np.arange(10) * 3,
               "world.worlds.tick.lo": np.array([4, 5]), "tail.births": np.zeros((1, 2))}  # fmt: skip
     records = {name: np.arange(4, dtype=np.uint64).reshape(2, 2) for name in TABLES}
-    whole = digests(records, arrays, 2)
+    islands = config(MEADOW, cells=5).islands
+    whole = digests(records, arrays, 2, islands)
     monkeypatch.setattr(digest, "BLOCK", block)
-    assert digests(records, {**arrays, "tail.births": np.ones((2, 2))}, 2) == whole
+    assert digests(records, {**arrays, "tail.births": np.ones((2, 2))}, 2, islands) == whole
 
 
 DEATHS = pa.schema([("world", pa.int32()), ("id", pa.int64()), ("mate", pa.int64())])
