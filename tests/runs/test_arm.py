@@ -59,6 +59,7 @@ def test_an_arm_has_the_numbers_rows_lives_and_food_of_one_run(both: tuple[Run, 
         columns = ("world", "tick") if name == "metrics" else ("world", "tick", "id")
         key = [(each, "ascending") for each in columns]
         assert other.sort_by(key) == one.sort_by(key)
+        assert len(both[1].opened().table(name, ["tick"])) == len(other)
     one, other = (run.lives() for run in both)
     for each in fields(one):
         np.testing.assert_array_equal(getattr(other, each.name), getattr(one, each.name))

@@ -19,7 +19,6 @@ from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs.archive import Archive
 from tests.commands import COMMAND, complains, environment, here, watched
 from tests.strangers import PARTS, POND, begun, forget
-from tests.trouble import SMALL
 from tests.worlds import HOSTED, config
 
 SIMULATED: dict[str, Any] = {
@@ -88,21 +87,6 @@ def test_a_command_lives_in_any_folder_and_locale_and_with_closed_streams(tmp_pa
     assert done.stdout.decode().startswith("水\\x1b: 1 world")
     assert "primordia plot run\n" in done.stdout.decode()
     assert here("info", tmp_path / "run").returncode == 0
-
-
-@pytest.mark.slow
-def test_no_file_of_the_current_folder_takes_the_place_of_an_installed_one(tmp_path: Path) -> None:
-    """The script is another way to start a command."""
-    hostile(tmp_path)
-    script = Path(sys.executable).with_name("primordia")
-    done = subprocess.run(
-        [script, "run", *SMALL, "--ticks", "1", "--out", "run"],
-        cwd=tmp_path,
-        env={**environment(), "PRIMORDIA_CORES": "2"},
-        capture_output=True,
-        text=True,
-    )
-    assert (done.returncode, done.stderr) == (0, "")
 
 
 @pytest.mark.slow

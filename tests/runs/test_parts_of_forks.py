@@ -162,35 +162,27 @@ def test_hunger_that_is_added_to_a_world_begins_with_full_stores() -> None:
     assert energy.tolist() == [400 * ONE] * 3 * 24
 
 
-def test_the_length_of_saved_states_is_no_part_of_the_form_of_an_array() -> None:
-    arrays = {"bodies.states": np.zeros((4, 9)), "bodies.other": np.zeros((4, 9))}
-    assert fork._form("bodies.states", arrays) == (4,)
-    assert fork._form("bodies.other", arrays) == (4, 9)
-    assert fork._form("bodies.none", arrays) == ()
-
-
-@pytest.mark.parametrize("more", [False, True])
-def test_births_of_the_living_are_in_order_of_events_and_have_their_own_notes(more: bool) -> None:
+def test_births_of_the_living_are_in_order_of_events_and_have_their_own_notes() -> None:
     """Births are in order of ticks, and those of one tick are in order of worlds and cells.
 
-    There may be mates and endowments. Mates are left out, since the living are the roots of later lines.
+    They have endowments. Mates are left out, since the living are the roots of later lines.
     """
     lives = worlds_of([(9, 0, False), (4, 0, False)], [(4, 0, False), (7, 0, False)], until=40)
     lives = replace(lives, cell=np.array([3, 1, 4, 0]), parent=np.array([-1, 0, -1, 0]))
     lives = lives.take(np.array([3, 0, 2, 1]))
     mutation = SimpleNamespace(notes=("step", "way"))
-    heredity = SimpleNamespace(recombination="crossover" if more else None, mutation=mutation)
+    heredity = SimpleNamespace(recombination="crossover", mutation=mutation)
     organisms = SimpleNamespace(notes=np.arange(4 * CELLS).reshape(-1, 2))
     engine: Any = SimpleNamespace(
-        law=SimpleNamespace(cells=CELLS, heredity=heredity, act="act" if more else None),
+        law=SimpleNamespace(cells=CELLS, heredity=heredity, act="act"),
         state=SimpleNamespace(world=SimpleNamespace(organisms=organisms)),
     )
     source: Any = SimpleNamespace(endowments_of=lambda lives: 100 * lives.world + lives.born)
     words = fork._birth_rows(source, lives, engine)
-    rows = birth_columns(more, ("step", "way"), more).unpacked(words)
+    rows = birth_columns(True, ("step", "way"), True).unpacked(words)
     expected = {"tick": [4, 4, 7, 9], "cell": [3, 9, 5, 1], "id": [0, 0, 1, 1]}
     expected |= {"parent": [-1, -1, 0, 0], "step": [6, 18, 10, 2], "way": [7, 19, 11, 3]}
-    expected |= {"mate": [-1] * 4, "endowment": [4, 104, 107, 9]} if more else {}
+    expected |= {"mate": [-1] * 4, "endowment": [4, 104, 107, 9]}
     assert {name: rows[name].tolist() for name in rows if name != "cause"} == expected
 
 

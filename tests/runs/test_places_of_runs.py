@@ -20,7 +20,7 @@ from primordia.runs.arm import _refuse_twice, arm
 from primordia.runs.description import Description
 from primordia.runs.manifest import Progress
 from primordia.runs.opening import arm_paths, only, run_paths
-from primordia.runs.records import Records, _Joined, _shifted
+from primordia.runs.records import Records, _Joined
 from primordia.settings.limits import Stop
 from tests.synthetic import worlds_of
 from tests.worlds import MEADOW, config
@@ -73,25 +73,6 @@ def test_an_experiment_names_its_arms(tmp_path: Path) -> None:
     assert arm_paths(tmp_path) == [tmp_path / "harsh", tmp_path / "mild"]
     with pytest.raises(InputError, match=f"arms: {tmp_path / 'harsh'}, {tmp_path / 'mild'}$"):
         run_paths(tmp_path)
-
-
-def test_runs_of_an_arm_are_in_order_of_seeds_and_the_arm_has_a_name(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    seeds = {"a": 9, "b": 2, "c": 5}
-    paths = [begun(tmp_path / "arm" / name) for name in seeds]
-
-    def archive(path: Path) -> Any:
-        return SimpleNamespace(config=SimpleNamespace(seed=seeds[path.name]), path=path)
-
-    monkeypatch.setattr(opening, "archive", archive)
-    monkeypatch.setattr(opening, "arm", lambda path, runs: (path, [run.path.name for run in runs]))
-    order = ["b", "c", "a"]
-    assert opening.opened([tmp_path / "arm"]) == (tmp_path / "arm", order)
-    assert opening.opened(paths) == (paths[0], order)
-    assert opening.opened(paths, "mine") == (Path("mine"), order)
-    assert opening.opened(paths[:1], "mine") == (Path("mine"), ["a"])
-    assert opening.opened(paths[:1]).path == paths[0]
 
 
 def invented(path: str, worlds: int, start: int) -> Any:
@@ -149,15 +130,6 @@ def test_an_arm_has_the_versions_damage_rows_and_lives_of_all_its_runs() -> None
     found = [run_of(several, world) for world in range(6)]
     assert [run.path.name for run, _ in found] == ["a", "a", "b", "b", "b", "c"]
     assert [world for _, world in found] == [0, 1, 0, 1, 2, 0]
-
-
-def test_rows_of_a_later_run_have_later_worlds() -> None:
-    part = pa.table({"id": [4, 5], "world": pa.array([0, 1], pa.int32())})
-    assert _shifted(part, 0) is part
-    moved = _shifted(part, 3)
-    assert moved.schema == part.schema
-    assert moved.to_pydict() == {"id": [4, 5], "world": [3, 4]}
-    assert _shifted(part.select(["id"]), 3).to_pydict() == {"id": [4, 5]}
 
 
 def test_an_arm_has_no_more_worlds_than_its_arrays_can_number(

@@ -59,18 +59,6 @@ def segments(run: Path, name: str) -> list[int]:
     return [pq.read_metadata(path).num_rows for path in sorted((run / name).iterdir())]
 
 
-def test_full_segments_hold_all_rows(
-    lived: Lived, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(recorder, "SEGMENT_ROWS", 17)
-    run = recorded(tmp_path / "run")
-    assert_all_rows(run, lived)
-    for name in TABLES:
-        *full, last = segments(run.path, name)
-        assert set(full) == {17}
-        assert 0 < last <= 17
-
-
 @pytest.mark.parametrize("size", [50, 2**20])
 def test_tails_and_segments_together_hold_every_row(
     lived: Lived, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, size: int
@@ -118,6 +106,7 @@ SCHEMAS = {
 
 def test_files_are_plain_parquet(lived: Lived, tmp_path: Path) -> None:
     run = recorded(tmp_path / "run")
+    assert_all_rows(run, lived)
     for name, columns in SCHEMAS.items():
         files = sorted((run.path / name).iterdir())
         assert [file.name for file in files] == ["000000.parquet"]
