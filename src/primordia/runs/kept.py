@@ -96,7 +96,7 @@ def check(config: Config, run: Path, about: Description) -> None:
         if files.sha256(run / FOLDER / name) != sha256:
             raise Trouble(f"{run / FOLDER / name} was changed or damaged: its checksum differs")
     try:
-        more = _needed(config, config.kept) - {*config.kept.values()}
+        more = _needed(config, kept) - {*kept.values()} if (kept := config.kept) else set()
     except ValueError as error:
         raise Trouble(f"{run / FOLDER} cannot be read: {error}") from None
     if more:
