@@ -168,7 +168,7 @@ def test_births_of_the_living_are_in_order_of_events_and_have_their_own_notes() 
     They have endowments. Mates are left out, since the living are the roots of later lines.
     """
     lives = worlds_of([(9, 0, False), (4, 0, False)], [(4, 0, False), (7, 0, False)], until=40)
-    lives = replace(lives, cell=np.array([3, 1, 4, 0]), parent=np.array([-1, 0, -1, 0]))
+    lives = replace(lives, cell=np.array([3, 1, 2, 0]), parent=np.array([-1, 0, -1, 0]))
     lives = lives.take(np.array([3, 0, 2, 1]))
     mutation = SimpleNamespace(notes=("step", "way"))
     heredity = SimpleNamespace(recombination="crossover", mutation=mutation)
@@ -180,8 +180,8 @@ def test_births_of_the_living_are_in_order_of_events_and_have_their_own_notes() 
     source: Any = SimpleNamespace(endowments_of=lambda lives: 100 * lives.world + lives.born)
     words = fork._birth_rows(source, lives, engine)
     rows = birth_columns(True, ("step", "way"), True).unpacked(words)
-    expected = {"tick": [4, 4, 7, 9], "cell": [3, 9, 5, 1], "id": [0, 0, 1, 1]}
-    expected |= {"parent": [-1, -1, 0, 0], "step": [6, 18, 10, 2], "way": [7, 19, 11, 3]}
+    expected = {"tick": [4, 4, 7, 9], "cell": [3, 7, 5, 1], "id": [0, 0, 1, 1]}
+    expected |= {"parent": [-1, -1, 0, 0], "step": [6, 14, 10, 2], "way": [7, 15, 11, 3]}
     expected |= {"mate": [-1] * 4, "endowment": [4, 104, 107, 9]}
     assert {name: rows[name].tolist() for name in rows if name != "cause"} == expected
 
