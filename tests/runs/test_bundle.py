@@ -13,7 +13,7 @@ from primordia.errors import Trouble
 from primordia.runs import bundle, directory, loop
 from tests.bundles import SETTINGS, temporary_files  # noqa: F401, which pytest calls
 from tests.commands import complains, here
-from tests.trouble import contents, newest
+from tests.trouble import newest
 from tests.worlds import config
 
 
@@ -58,10 +58,8 @@ def test_a_bundle_is_the_run_again(
     assert primordia.load(first).info() == primordia.load(path).info()
     for place, out in ((first, "there"), (path, "here")):
         assert here("plot", place, "--figure", "ages", "--out", tmp_path / out).returncode == 0
-    drawn, expected = (contents(tmp_path / each) for each in ("there", "here"))
-    assert sorted(map(len, drawn.values())) == sorted(map(len, expected.values()))
-    (png,), (same,) = ([*(tmp_path / each).glob("*.png")] for each in ("there", "here"))
-    assert png.read_bytes() == same.read_bytes()
+    drawn, expected = (tmp_path / each / "ages.png" for each in ("there", "here"))
+    assert drawn.read_bytes() == expected.read_bytes()
     for number in primordia.load(path).lives().of_world(0).id[::20].tolist():
         relived = [primordia.load(each).organism(number).relive() for each in (first, path)]
         assert relived[0].agrees
@@ -110,16 +108,9 @@ def test_a_run_that_goes_on_is_bundled_as_of_its_newest_checkpoint(
         primordia.load(run).bundle(tmp_path / "a.zip")
     assert seen[-1] == "000008"
     assert primordia.load(tmp_path / "a.zip").info() == primordia.load(run).info()
-    tried: list[Any] = []
-
-    def gone(archive: Any) -> Any:
-        tried.append(archive)
-        return {"checkpoints/000001/gone": None}
-
-    monkeypatch.setattr(bundle, "_named", gone)
+    monkeypatch.setattr(bundle, "_named", lambda _: {"checkpoints/000001/gone": None})
     with pytest.raises(Trouble, match="changes faster than it can be read"):
         bundle.write(run, tmp_path / "b.zip")
-    assert len(tried) == bundle.TRIES
     assert not (tmp_path / "b.zip").exists()
 
 
@@ -158,16 +149,6 @@ def test_bundles_are_runs_of_an_arm(run: Path, file: Path, tmp_path: Path) -> No
     sent = primordia.load([file, tmp_path / "other.zip"]).info()
     assert sent["worlds"] == primordia.load([run, tmp_path / "other"]).info()["worlds"]
     complains(here("plot", file, tmp_path / "other.zip"), 2, "is a bundle and cannot be changed")
-
-
-def test_a_bundle_that_is_written_again_is_read_again(
-    run: Path, fork: Path, tmp_path: Path
-) -> None:
-    sent = tmp_path / "sent.zip"
-    for each in (run, fork):
-        primordia.load(each).bundle(sent)
-        assert digests(sent) == digests(each)
-        sent.unlink()
 
 
 @pytest.mark.parametrize("change", ["nothing", "size", "time", "file"])

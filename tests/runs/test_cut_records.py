@@ -7,7 +7,7 @@ import pytest
 
 from primordia.errors import InputError
 from primordia.law.world import Cause
-from primordia.runs.lives import ALIVE, Lives, alive_at_fork, joined
+from primordia.runs.lives import ALIVE, Lives, joined
 from tests.synthetic import world_of, worlds_of
 
 FIRST = [(0, 9, True), (0, 19, True), (5, 14, True), (10, 0, True), (20, 50, False), (21, 3, True)]
@@ -22,29 +22,22 @@ def lives() -> Lives:
     return replace(both, world=both.world * 2)
 
 
-def rows(lives: Lives) -> list[tuple[int, ...]]:
-    columns = (getattr(lives, each.name).tolist() for each in fields(lives))
-    return list(zip(*columns, strict=True))
-
-
-def as_dicts(lives: Lives) -> list[dict[str, int]]:
+def rows(lives: Lives) -> list[dict[str, int]]:
     names = [each.name for each in fields(lives)]
-    return [dict(zip(names, row, strict=True)) for row in rows(lives)]
+    columns = (getattr(lives, name).tolist() for name in names)
+    return [dict(zip(names, row, strict=True)) for row in zip(*columns, strict=True)]
 
 
-@pytest.mark.parametrize("tick", [0, 4, 5, 9, 10, 19, 20, 21, 30, 40])
+@pytest.mark.parametrize("tick", [0, 9, 10, 20, 40])
 def test_a_fork_records_organisms_alive_at_its_tick_and_later_births(
     lives: Lives, tick: int
 ) -> None:
-    expected = []
-    for life in as_dicts(lives):
-        if life["cause"] == ALIVE or life["ended"] > tick:
-            at_fork = tick > 0 and life["born"] <= tick
-            expected.append({**life, "seen": max(life["born"], tick), "inherited": at_fork})
-    assert as_dicts(lives.recorded_since(tick)) == expected
-    assert alive_at_fork(lives.born, tick).tolist() == [
-        0 < tick >= born for born in lives.born.tolist()
+    expected = [
+        {**life, "seen": max(life["born"], tick), "inherited": tick > 0 and life["born"] <= tick}
+        for life in rows(lives)
+        if life["cause"] == ALIVE or life["ended"] > tick
     ]
+    assert rows(lives.recorded_since(tick)) == expected
 
 
 def test_a_fork_of_a_fork_keeps_inherited_organisms(lives: Lives) -> None:
@@ -54,31 +47,24 @@ def test_a_fork_of_a_fork_keeps_inherited_organisms(lives: Lives) -> None:
     assert not later.inherited.all()
 
 
-@pytest.mark.parametrize("tick", [0, 5, 10, 19, 20, 24, 25, 30, 40, 41])
+@pytest.mark.parametrize("tick", [0, 10, 20, 25, 41])
 def test_a_stopped_record_holds_no_later_birth_and_no_later_death(lives: Lives, tick: int) -> None:
     """A death in the last tick is on record. An organism that dies later is alive at the end."""
-    expected = []
-    for life in as_dicts(lives):
-        if life["born"] > tick:
-            continue
-        after = life["ended"] > tick
-        now = {"ended": tick, "cause": ALIVE} if after else {}
-        expected.append({**life, **now})
-    assert as_dicts(lives.recorded_until(tick)) == expected
+    expected = [
+        {**life, **({"ended": tick, "cause": ALIVE} if life["ended"] > tick else {})}
+        for life in rows(lives)
+        if life["born"] <= tick
+    ]
+    assert rows(lives.recorded_until(tick)) == expected
     assert lives.recorded_until(tick).cause.dtype == lives.cause.dtype
 
 
 @pytest.mark.parametrize("tick", [0, 20])
 def test_time_since_the_fork_is_counted_from_its_tick(lives: Lives, tick: int) -> None:
     fork = lives.recorded_since(tick)
-    since = fork.since_fork()
-    assert since.born.tolist() == [born - tick for born in fork.born.tolist()]
-    assert since.seen.tolist() == [max(born - tick, 0) for born in fork.born.tolist()]
-    assert since.ended.tolist() == [ended - tick for ended in fork.ended.tolist()]
-    for name in ("world", "id", "parent", "cell", "cause", "inherited"):
-        assert getattr(since, name).tolist() == getattr(fork, name).tolist()
-    assert (since.lifespan == fork.lifespan).all()
-    assert (since.entered == fork.entered).all()
+    moved = ("born", "seen", "ended")
+    expected = [life | {name: life[name] - tick for name in moved} for life in rows(fork)]
+    assert rows(fork.since_fork()) == expected
 
 
 def test_a_world_that_had_no_organism_at_the_fork_counts_from_the_same_tick() -> None:
@@ -92,8 +78,8 @@ def test_a_world_that_had_no_organism_at_the_fork_counts_from_the_same_tick() ->
 
 def test_the_lives_of_one_world_are_taken_alone(lives: Lives) -> None:
     assert lives.worlds == 3
-    assert rows(lives.of_world(0)) == [row for row in rows(lives) if row[0] == 0]
-    assert rows(lives.of_world(2)) == [row for row in rows(lives) if row[0] == 2]
+    assert rows(lives.of_world(0)) == [row for row in rows(lives) if row["world"] == 0]
+    assert rows(lives.of_world(2)) == [row for row in rows(lives) if row["world"] == 2]
     assert len(lives.of_world(1)) == len(lives.of_world(3)) == 0
     assert lives.of_world(3).worlds == 0
     alone = lives.of_world(0)
@@ -116,16 +102,6 @@ def test_the_oldest_and_the_champions_leave_out_worlds_without_a_birth(lives: Li
         lives.oldest(1)
     with pytest.raises(InputError, match=r"^there is no world 3; the worlds are 0 to 2$"):
         lives.oldest(3)
-
-
-def test_organisms_alive_at_a_fork_are_no_champions(lives: Lives) -> None:
-    """Two organisms are born after the fork at 20. The others were alive at 20."""
-    fork = lives.recorded_since(20)
-    expected = [row for row, born in enumerate(fork.born.tolist()) if born > 20]
-    assert fork.champions().tolist() == expected
-    assert np.flatnonzero(fork.late(0.0)).tolist() == expected
-    assert len(expected) == 2
-    assert len(lives.recorded_since(30).champions()) == 0
 
 
 def test_an_organism_is_found_in_its_own_world(lives: Lives) -> None:

@@ -7,13 +7,12 @@ from types import SimpleNamespace
 
 import jax
 import pytest
-from click.testing import CliRunner
 
 import primordia
 from primordia import device
-from primordia.cli.commands import commands
 from primordia.errors import InputError
 from primordia.runs import loop
+from tests.commands import complains, here
 from tests.worlds import MILL, config
 
 CARD = "NVIDIA H100 80GB HBM3"
@@ -35,27 +34,18 @@ COMMANDS = (
 )  # fmt: skip
 
 
-@pytest.mark.parametrize("command", COMMANDS)
-def test_a_device_that_is_not_here_is_named_in_one_line(
-    command: str, elsewhere: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_a_device_that_is_not_here_is_named_and_another_can_be_chosen(
+    elsewhere: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """Lives of this run were lived on the CPU, so they agree there."""
     monkeypatch.chdir(tmp_path)
     before = sorted(elsewhere.rglob("*"))
-    words = [word.format(elsewhere) for word in command.split()]
-    error = CliRunner().invoke(commands, words).exception
-    assert isinstance(error, InputError)
-    assert f"made on {CARD}" in str(error)
-    assert "--device cpu" in str(error)
+    for command in COMMANDS:
+        done = here(*command.format(elsewhere).split())
+        complains(done, 2, f"made on {CARD}", "--device cpu")
     assert sorted(elsewhere.rglob("*")) == before
     assert not list(tmp_path.iterdir())
-
-
-def test_another_device_can_be_chosen(elsewhere: Path) -> None:
-    """Lives of this run were lived on the CPU, so they agree there."""
-    relived = CliRunner().invoke(commands, ["relive", str(elsewhere), "0", "--device", "cpu"])
-    assert relived.exit_code == 0, relived.output
-    refused = CliRunner().invoke(commands, ["resume", str(elsewhere), "--device", "cpu"]).exception
-    assert f"device {CARD} then, cpu now" in str(refused)
+    assert here("relive", elsewhere, 0, "--device", "cpu").returncode == 0
 
 
 def test_a_run_without_a_recorded_device_is_lived_on_the_cpu(

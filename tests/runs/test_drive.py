@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from primordia.runs import checkpoint, faults, loop
+from primordia.runs import checkpoint, directory, loop
 from primordia.runs.manifest import Progress
 from primordia.settings.limits import Stop
 
@@ -64,7 +64,7 @@ def patched(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Any:
             run.log.append(("save", state, now.wall_s - EARLIER_S))
 
         monkeypatch.setattr(checkpoint, "save", save)
-        monkeypatch.setattr(faults, "note", lambda _, lines: run.log.append((lines,)))
+        monkeypatch.setattr(directory, "note_faults", lambda _, lines: run.log.append((lines,)))
         monkeypatch.setattr(time, "perf_counter", lambda: CHUNK_S * run.done)
         engine: Any = run
         loop.drive(engine, engine, tmp_path, progress, every, listen)
@@ -87,38 +87,40 @@ def chunk(number: int) -> list[Step]:
     return [(f"events {number}",), (f"faults {number}",), ("listen", CHUNK_S * number)]
 
 
-def test_each_chunk_is_recorded_and_reported_before_it_is_saved(patched: Any) -> None:
-    """The first checkpoint is due 1 s after the first chunk, and the second one 4 s later."""
-    run = Invented(12)
-    first, second = ("save", "state 3", 1.5), ("save", "state 11", 5.5)
-    expected = [step for number in range(1, 4) for step in chunk(number)] + [first]
-    expected += [step for number in range(4, 12) for step in chunk(number)] + [second]
-    assert patched(run, 60.0, noting(run)) == [
-        *expected, *chunk(12), ("finish",), ("save", "state 12", 6.0)
-    ]  # fmt: skip
+@pytest.mark.parametrize(
+    ("every", "saves"), [(60.0, [3, 11, 31, 151]), (7.0, [3, 11, 25, 39]), (0.5, [2, 3, 4, 5])]
+)
+def test_each_chunk_is_recorded_and_reported_before_it_is_saved(
+    every: float, saves: list[int], patched: Any
+) -> None:
+    """Early checkpoints are due 1 s, 4 s and 10 s after the one before, so that a run can be read soon.
+
+    Time begins after the first chunk.
+    """
+    last, expected = saves[-1], list[Step]()
+    for number in range(1, last + 1):
+        saved = [("save", f"state {number}", CHUNK_S * number)] if number in saves else []
+        expected += [*chunk(number), *saved]
+    expected += [("finish",), ("save", f"state {last}", CHUNK_S * last)]
+    run = Invented(last)
+    assert patched(run, every, noting(run)) == expected
 
 
-@pytest.mark.parametrize("press", [1, 2])
+@pytest.mark.parametrize("press", [0, 1, 2])
 def test_ctrl_c_in_a_chunk_saves_that_chunk_and_ends_no_segment(press: int, patched: Any) -> None:
+    """Before the first chunk, it saves nothing."""
     run = Invented(5, press)
     with pytest.raises(KeyboardInterrupt):
         patched(run, 60.0, noting(run))
-    saved = ("save", f"state {press}", CHUNK_S * press)
-    assert run.log == [*(step for number in range(press) for step in chunk(number + 1)), saved]
-
-
-def test_ctrl_c_before_the_first_chunk_saves_nothing(patched: Any) -> None:
-    run = Invented(5, 0)
-    with pytest.raises(KeyboardInterrupt):
-        patched(run, 0.0, noting(run))
-    assert run.log == []
+    saved = [("save", f"state {press}", CHUNK_S * press)] if press else []
+    assert run.log == [*(step for number in range(press) for step in chunk(number + 1)), *saved]
 
 
 def test_a_run_that_is_done_is_saved_once_more(patched: Any) -> None:
     assert patched(Invented(0), 0.0, None) == [("finish",), ("save", "state 0", 0.0)]
 
 
-@pytest.mark.parametrize("error", [RuntimeError("no"), KeyboardInterrupt(), SystemExit(3)])
+@pytest.mark.parametrize("error", [RuntimeError("no"), KeyboardInterrupt()])
 def test_a_chunk_is_saved_before_the_error_of_a_listener(
     error: BaseException, patched: Any
 ) -> None:

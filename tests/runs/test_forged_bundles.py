@@ -25,6 +25,7 @@ from tests.trouble import contents
 from tests.worlds import config
 
 Entry = tuple[zipfile.ZipInfo, bytes]
+Change = Callable[[list[Entry]], Any]
 
 
 @pytest.fixture(scope="module")
@@ -54,49 +55,27 @@ def zipped(parts: list[Entry], path: Path) -> Path:
     return path
 
 
-def adding(name: str, mode: int = 0o100644, content: bytes = b"x") -> Callable[[list[Entry]], Any]:
-    return lambda parts: parts.append((plain(name, mode), content))
+def adding(name: str, mode: int = 0o100644) -> Change:
+    return lambda parts: parts.append((plain(name, mode), b"x"))
 
 
-def renaming(end: str, name: str) -> Callable[[list[Entry]], None]:
+def replacing(end: str, with_: Callable[[bytes], bytes | None]) -> Change:
+    """Change the content of files whose names end in `end`; None removes them."""
+
     def change(parts: list[Entry]) -> None:
-        for place, (entry, content) in enumerate(parts):
-            if entry.filename.endswith(end):
-                parts[place] = plain(name), content
+        new = [(e, with_(content) if e.filename.endswith(end) else content) for e, content in parts]
+        parts[:] = [(entry, content) for entry, content in new if content is not None]
 
     return change
 
 
-def dropping(end: str) -> Callable[[list[Entry]], None]:
-    def change(parts: list[Entry]) -> None:
-        parts[:] = [each for each in parts if not each[0].filename.endswith(end)]
-
-    return change
-
-
-def replacing(end: str, with_: Callable[[bytes], bytes]) -> Callable[[list[Entry]], None]:
-    def change(parts: list[Entry]) -> None:
-        parts[:] = [
-            (entry, with_(content) if entry.filename.endswith(end) else content)
-            for entry, content in parts
-        ]
-
-    return change
+def dropping(end: str) -> Change:
+    return replacing(end, lambda _: None)
 
 
 def compressing(parts: list[Entry]) -> None:
     for entry, _ in parts:
         entry.compress_type = zipfile.ZIP_DEFLATED
-
-
-def bombing(parts: list[Entry]) -> None:
-    entry = plain("run/births/000000.parquet")
-    entry.compress_type = zipfile.ZIP_DEFLATED
-    parts[0] = entry, bytes(10**7)
-
-
-def doubling(parts: list[Entry]) -> None:
-    parts.append(parts[0])
 
 
 def second_checkpoint(parts: list[Entry]) -> None:
@@ -105,57 +84,46 @@ def second_checkpoint(parts: list[Entry]) -> None:
             parts.append((plain(entry.filename.replace("checkpoints/0", "checkpoints/9")), content))
 
 
+def resealed(content: bytes, change: Callable[[dict[str, Any]], object]) -> bytes:
+    """Return a changed manifest with its new checksum."""
+    told = json.loads(content)
+    del told["sha256"]
+    change(told)
+    told["sha256"] = manifest._checksum(told)
+    return json.dumps(told).encode()
+
+
 def contradicting(parts: list[Entry]) -> None:
     """Add an origin that names other bytes of the settings."""
-    for entry, content in list(parts):
-        if entry.filename.endswith("manifest.json"):
-            told = json.loads(content)
-            del told["sha256"]
-            told["inputs"]["config.toml"]["bytes"] += 1
-            told["sha256"] = manifest._checksum(told)
-            parts.append((plain("run/origin/manifest.json"), json.dumps(told).encode()))
+    content = next(each for entry, each in parts if entry.filename.endswith("manifest.json"))
+    forged = resealed(content, lambda told: told["inputs"]["config.toml"].update(bytes=1))
+    parts.append((plain("run/origin/manifest.json"), forged))
 
 
-def naming(*names: str) -> Callable[[list[Entry]], None]:
-    """Let the manifest name files of the user's own code."""
+def naming(*names: str) -> Change:
+    """Let the manifest name empty files of the user's own code, which are there."""
+    seal = {"bytes": 0, "sha256": hashlib.sha256(b"").hexdigest()}
 
     def change(parts: list[Entry]) -> None:
-        for place, (entry, content) in enumerate(parts):
-            if entry.filename.endswith("manifest.json"):
-                told = json.loads(content)
-                del told["sha256"]
-                seal = {"bytes": 0, "sha256": hashlib.sha256(b"").hexdigest()}
-                told["inputs"] |= dict.fromkeys(names, seal)
-                told["sha256"] = manifest._checksum(told)
-                parts[place] = entry, json.dumps(told).encode()
+        more = dict.fromkeys(names, seal)
+        replacing(
+            "manifest.json", lambda content: resealed(content, lambda t: t["inputs"].update(more))
+        )(parts)
         parts.extend((plain(f"run/{name}"), b"") for name in names)
 
     return change
 
 
-HOSTILE: dict[str, tuple[Callable[[list[Entry]], Any], str]] = {
+HOSTILE: dict[str, tuple[Change, str]] = {
     "outside": (adding("evil"), "'evil' is not the path of a file in a run"),
-    "above": (adding("run/../evil"), "not the path of a file in a run"),
     "above, late": (adding("run/code/../../../evil"), "not the path of a file"),
-    "absolute": (adding("/tmp/evil"), "not the path of a file"),
-    "absolute, inside": (adding("run//tmp/evil"), "not the path of a file"),
-    "a drive": (adding("run/C:/evil"), "not the path of a file"),
-    "backslashes": (adding("run/..\\evil"), "not the path of a file"),
-    "control characters": (adding("run/code/\x1b[2J.py"), "not the path of a file"),
-    "a folder": (adding("run/code/", 0o040755, b""), "not the path of a file"),
-    "a link": (
-        adding("run/code/evil.py", 0o120777, b"/etc/passwd"),
-        "code/evil.py is a symbolic link",
-    ),
-    "a device": (adding("run/code/evil.py", 0o020666), "code/evil.py is a device"),
+    "a link": (adding("run/code/evil.py", 0o120777), "code/evil.py is a symbolic link"),
     "a pipe": (adding("run/code/evil.py", 0o010666), "code/evil.py is a pipe"),
-    "two of a name": (doubling, "occurs twice"),
+    "two of a name": (lambda parts: parts.append(parts[0]), "occurs twice"),
     "names that differ by case": (adding("run/CONFIG.toml"), "differ only in case"),
     "names that differ by form": (adding("run/\uff43onfig.toml"), "differ only in case"),
-    "more than is named": (adding("run/births/000077.parquet"), "is not named by any manifest"),
-    "code": (adding("run/code/evil.py"), "code/evil.py is not named by any manifest"),
+    "more than is named": (adding("run/code/evil.py"), "code/evil.py is not named by any manifest"),
     "less than is named": (dropping("000000.parquet"), "births/000000.parquet is missing"),
-    "no settings": (dropping("config.toml"), "config.toml is missing"),
     "no versions": (dropping("versions.json"), "versions.json is missing"),
     "no manifest": (dropping("manifest.json"), "it has no checkpoints instead of one"),
     "two checkpoints": (second_checkpoint, "it has 2 checkpoints instead of one"),
@@ -163,7 +131,7 @@ HOSTILE: dict[str, tuple[Callable[[list[Entry]], Any], str]] = {
     "another size": (replacing("config.toml", lambda content: content + b"\n"), "another size"),
     "another content": (
         replacing("config.toml", lambda content: b"#" + content[1:]),
-        "the checksum",
+        "the checksum of config.toml differs",
     ),
     "a changed manifest": (
         replacing("t.json", lambda content: content.replace(b": 0", b": 1")),
@@ -174,7 +142,6 @@ HOSTILE: dict[str, tuple[Callable[[list[Entry]], Any], str]] = {
     "compressed": (compressing, "is compressed"),
     "deep folders": (naming(f"code/{'d/' * 1000}x.py"), "not that of a run"),
     "many folders": (naming(*(f"code/{each}/x.py" for each in range(5000))), "not that of a run"),
-    "a bomb": (bombing, "is compressed"),
 }
 
 
@@ -185,91 +152,42 @@ def test_a_hostile_bundle_is_refused_in_one_line(file: Path, tmp_path: Path, kin
     change(parts)
     (folder := tmp_path / "folder").mkdir()
     forged, before = zipped(parts, folder / "forged.zip"), os.listdir(tempfile.gettempdir())
-    for command in (["info"], ["relive", "1"], ["unbundle", str(folder / "new")]):
+    for command in (["info"], ["unbundle", str(folder / "new")]):
         complains(here(command[0], forged, *command[1:]), 2, words)
     assert os.listdir(tempfile.gettempdir()) == before
     assert (os.listdir(tmp_path), os.listdir(folder)) == (["folder"], ["forged.zip"])
 
 
-MANIFEST = "checkpoints/000001/manifest.json"
 CENTRAL, LOCAL = b"PK\x01\x02", b"PK\x03\x04"
 """Signatures of what a zip says of a file at its end, and before the file."""
 
 
-def marked(content: bytearray, signature: bytes, offset: int, value: bytes) -> None:
-    """Change bytes of the header of the last file."""
-    at = content.rindex(signature) + offset
-    content[at : at + len(value)] = value
-
-
-def encrypted(content: bytearray) -> None:
-    marked(content, CENTRAL, 8, b"\x01")
-
-
-def other_name(content: bytearray) -> None:
-    marked(content, LOCAL, 30, b"RUN")
-
-
-def huge(content: bytearray) -> None:
-    marked(content, CENTRAL, 20, struct.pack("<II", 10**9, 10**9))
-
-
-def shorter(content: bytearray) -> None:
-    """Give the last file a size that is smaller than that of the stored bytes."""
-    marked(content, CENTRAL, 24, struct.pack("<I", 1))
-
-
-def unknown_method(content: bytearray) -> None:
-    marked(content, CENTRAL, 10, struct.pack("<H", 98))
-
-
-def far_away(content: bytearray) -> None:
-    marked(content, CENTRAL, 42, struct.pack("<I", 2**31))
-
-
-def upon_another(content: bytearray) -> None:
-    """The last file lies where the first one does."""
-    marked(content, CENTRAL, 42, struct.pack("<I", 0))
-
-
-def cut(content: bytearray) -> None:
-    del content[len(content) // 2 :]
-
-
-def headless(content: bytearray) -> None:
-    del content[: len(content) // 2]
-
-
-def name_with_nul(content: bytearray) -> None:
-    marked(content, CENTRAL, 46 + 8, b"\0")
-
-
-ODD: dict[Callable[[bytearray], None], str] = {
-    encrypted: "is encrypted",
-    other_name: "differ",
-    huge: "its files are larger than the bundle",
-    shorter: "is compressed",
-    unknown_method: "is compressed",
-    far_away: "is not a valid bundle",
-    upon_another: "differ",
-    cut: "is neither a run of primordia nor a bundle of one",
-    headless: "is not a valid bundle",
-    name_with_nul: "not the path of a file",
-}
-
-
-@pytest.mark.parametrize("change", ODD)
-def test_an_odd_zip_is_refused_in_one_line(
-    file: Path, tmp_path: Path, change: Callable[[bytearray], None]
+@pytest.mark.parametrize(
+    ("signature", "offset", "value", "says"),
+    [
+        (CENTRAL, 8, b"\x01", "is encrypted"),
+        (CENTRAL, 24, struct.pack("<I", 1), "is compressed"),  # less than the stored bytes
+        (CENTRAL, 42, struct.pack("<I", 0), "is not a valid bundle"),  # it lies upon another
+        (CENTRAL, 46 + 8, b"\0", "not the path of a file"),
+        (LOCAL, 30, b"RUN", "is not a valid bundle"),  # it has two names
+    ],
+)
+def test_an_odd_header_of_the_last_file_is_refused(
+    file: Path, tmp_path: Path, signature: bytes, offset: int, value: bytes, says: str
 ) -> None:
     content = bytearray(file.read_bytes())
-    change(content)
+    at = content.rindex(signature) + offset
+    content[at : at + len(value)] = value
     (tmp_path / "odd.zip").write_bytes(content)
-    before = os.listdir(tempfile.gettempdir())
-    complains(here("info", tmp_path / "odd.zip"), 2, ODD[change])
-    assert os.listdir(tempfile.gettempdir()) == before
-    (tmp_path / "text.zip").write_text("no zip")
-    complains(here("info", tmp_path / "text.zip"), 2, "is neither a run of primordia nor a bundle")
+    complains(here("info", tmp_path / "odd.zip"), 2, says)
+
+
+def test_half_a_bundle_is_refused(file: Path, tmp_path: Path) -> None:
+    content, says = file.read_bytes(), "is neither a run of primordia nor a bundle of one"
+    middle = len(content) // 2
+    for half, words in ((content[:middle], says), (content[middle:], "is not a valid bundle")):
+        (tmp_path / "half.zip").write_bytes(half)
+        complains(here("info", tmp_path / "half.zip"), 2, words)
 
 
 def test_files_that_together_are_larger_than_their_bundle_are_refused(
@@ -285,16 +203,16 @@ def test_files_that_together_are_larger_than_their_bundle_are_refused(
         bundle.unbundle(file, tmp_path / "run")
 
 
-@pytest.mark.parametrize("name", ["versions.json", "origin/manifest.json", MANIFEST])
 def test_a_large_file_of_those_that_are_read_whole_is_refused(
-    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(files, "READABLE", 3)
-    names = {"versions.json", "origin/manifest.json", MANIFEST}
-    parts = [(plain(f"run/{each}"), bytes(4 if each == name else 3)) for each in names]
-    forged = zipped(parts, tmp_path / "a.zip")
-    with pytest.raises(InputError, match=f"^{forged} is not a valid bundle: {name} is too large$"):
-        bundle.unbundle(forged, tmp_path / "run")
+    names = ("versions.json", "origin/manifest.json", "checkpoints/000001/manifest.json")
+    for name in names:
+        parts = [(plain(f"run/{each}"), bytes(4 if each == name else 3)) for each in names]
+        forged = zipped(parts, tmp_path / "a.zip")
+        with pytest.raises(InputError, match=f"is not a valid bundle: {name} is too large$"):
+            bundle.unbundle(forged, tmp_path / "run")
 
 
 @pytest.mark.parametrize("part", ["", ".", "..", *'\\:*?"<>|', "\n", "\x1b", "\u202e"])
@@ -330,15 +248,9 @@ def test_any_change_of_bytes_is_refused_or_makes_no_difference(
             bundle.unbundle(changed, out)
         except InputError:
             assert os.listdir(folder) == ["changed.zip"]
-        else:
-            bundle.unbundle(file, Path(folder, "good"))
-            same = [
-                {
-                    path.removeprefix(f"{folder}/{name}"): each
-                    for path, each in contents(Path(folder, name)).items()
-                }
-                for name in ("run", "good")
-            ]
-            told = [each.pop("/versions.json") for each in same]
-            assert same[0] == same[1]
-            assert len(told) == 2
+            return
+        (out / "versions.json").unlink()  # it has no checksum
+        held = {f"run/{Path(path).relative_to(out)}": each for path, each in contents(out).items()}
+        whole = {entry.filename: each for entry, each in entries(file)}
+        del whole["run/versions.json"]
+        assert held == whole

@@ -9,7 +9,6 @@ import pytest
 
 import primordia
 from primordia.errors import InputError, Trouble
-from primordia.figures.survival import quarters
 from primordia.history.foraging import foraging, harvests
 from primordia.random.wide import to_host
 from primordia.runs import loop
@@ -41,7 +40,7 @@ def same(a: Path, b: Path) -> bool:
 
 
 @pytest.mark.parametrize(
-    "at", [333, 334, 1500, *(pytest.param(at, marks=pytest.mark.slow) for at in (1, 1499))]
+    "at", [333, 1500, *(pytest.param(at, marks=pytest.mark.slow) for at in (1, 1499))]
 )
 def test_a_fork_without_changes_lives_the_same(mill: Path, tmp_path: Path, at: int) -> None:
     """Seasons that are due, food counted since the last look, and motors all continue."""
@@ -63,17 +62,31 @@ def after_the_fork(run: Path, at: int) -> list[tuple[int, ...]]:
 def test_a_fork_starts_from_a_checkpoint_or_lives_the_past_again(
     mill: Path, tmp_path: Path
 ) -> None:
-    """Only the newest checkpoints are kept; older ticks are lived again, with the same result."""
-    again, kept = primordia.load(mill).fork(700, tmp_path / "again"), tmp_path / "kept"
+    """Only the newest checkpoints are kept; older ticks are lived again, with the same result.
+
+    Progress is reported meanwhile.
+    """
+    ticks: list[int] = []
+
+    def listen(status: loop.Status) -> None:
+        ticks.append(int(to_host(status.engine.state.world.worlds.tick).min()))
+
+    again, kept = (
+        primordia.load(mill).fork(700, tmp_path / "again", listen=listen),
+        tmp_path / "kept",
+    )
+    assert ticks == sorted(ticks)
+    assert 700 in ticks
+    assert ticks[-1] == 1500
     loop.start(config(merged(SHIFTING, {"stop": {"ticks": 700}})), tmp_path / "short")
     primordia.load(tmp_path / "short").fork(700, kept, stop={"ticks": 1500})
     assert same(again.path, kept)
     assert same(mill, kept)
 
 
-@pytest.mark.parametrize("at", [300, pytest.param(1400, marks=pytest.mark.slow)])
-def test_figures_of_a_fork_begin_at_the_fork(mill: Path, tmp_path: Path, at: int) -> None:
+def test_figures_of_a_fork_begin_at_the_fork(mill: Path, tmp_path: Path) -> None:
     """Deaths, ages and food since the fork are those of the run that it is a fork of."""
+    at = 300
     forked = primordia.load(mill).fork(at, tmp_path / "fork")
     fork, source = Archive(forked.path), Archive(mill)
     whole, part = primordia.compare(mill, fork.path).arms
@@ -84,23 +97,16 @@ def test_figures_of_a_fork_begin_at_the_fork(mill: Path, tmp_path: Path, at: int
     np.testing.assert_array_equal(source.lives.recorded_since(at).seen, fork.lives.seen)
     for name in ("first", "births", "ticks"):
         np.testing.assert_array_equal(whole.measured[name].value, part.measured[name].value)
-    later = [fork.lives.of_world(world).born > at for world in range(2)]
-    assert (part.measured["first"].value <= [1 + born.sum() for born in later]).all()
     after, before = harvests(fork, 2), harvests(source, 2)
     for world in range(2):
         sampled = before[world].tick >= at
         for one, other in zip(after[world], before[world], strict=True):
             np.testing.assert_array_equal(one, other[sampled])
     assert foraging(fork).first_tick == at
-    since, alive = fork.lives.since_fork(), fork.lives.born <= at
-    assert (since.seen >= 0).all()
-    assert ((since.seen == 0) == alive).all()
-    assert (since.lifespan == fork.lives.lifespan).all()
-    if at == 300:
-        forked.plot(tmp_path, figures=["ages", "survival", "population", "foraging"])
-        for name in ("ages", "survival", "population"):
-            assert "since the fork" in (tmp_path / f"{name}.svg").read_text(encoding="utf-8")
-        assert (tmp_path / "foraging.svg").exists()
+    forked.plot(tmp_path, figures=["ages", "survival", "population", "foraging"])
+    for name in ("ages", "survival", "population"):
+        assert "since the fork" in (tmp_path / f"{name}.svg").read_text(encoding="utf-8")
+    assert (tmp_path / "foraging.svg").exists()
 
 
 @pytest.mark.slow
@@ -126,20 +132,6 @@ def test_a_season_changes_lives_as_a_fork_does(mill: Path, tmp_path: Path) -> No
     assert forked != after_the_fork(mill, 250)
 
 
-def test_progress_is_reported_while_the_past_of_a_fork_is_lived_again(
-    mill: Path, tmp_path: Path
-) -> None:
-    ticks: list[int] = []
-
-    def listen(status: loop.Status) -> None:
-        ticks.append(int(to_host(status.engine.state.world.worlds.tick).min()))
-
-    primordia.load(mill).fork(700, tmp_path / "fork", listen=listen)
-    assert ticks == sorted(ticks)
-    assert 700 in ticks
-    assert ticks[-1] == 1500
-
-
 def test_ctrl_c_before_a_fork_has_begun_leaves_an_empty_folder(
     mill: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -152,42 +144,6 @@ def test_ctrl_c_before_a_fork_has_begun_leaves_an_empty_folder(
     done = here("fork", mill, "--at", 700, "--out", tmp_path)  # the folder is empty and may be used
     assert (done.returncode, list(tmp_path.iterdir())) == (130, [])
     assert done.stderr.strip() == f"Stopped before {tmp_path} had begun"
-
-
-@pytest.mark.slow
-def test_forks_are_compared_where_they_have_time_in_common(mill: Path, tmp_path: Path) -> None:
-    late = primordia.load(mill).fork(1500, tmp_path / "late", stop={"ticks": 1600}).path
-    with pytest.raises(InputError, match=r"forked at tick 1,500, .* ends at 1,500"):
-        primordia.compare(mill, late)
-    early, later = (
-        primordia.load(mill).fork(at, tmp_path / f"at {at}", seed=at, stop={"ticks": end}).path
-        for at, end in ((900, 1450), (1200, 1500))
-    )
-    for runs in ((mill, early, later), (later, mill, early)):
-        for arm in primordia.compare(*runs).arms:
-            assert arm.pace.edges[[0, -1]].tolist() == [1200, 1450]
-            lives = Archive(next(run for run in runs if run.name == arm.name)).lives
-            within = lives.recorded_since(1200).recorded_until(1450)
-            assert arm.pace.deaths.sum() == within.died.sum() > 10
-            assert arm.pace.lived.sum() == (within.ended - within.seen).sum()
-
-
-@pytest.mark.slow
-def test_another_seed_is_another_future_of_the_same_past(mill: Path, tmp_path: Path) -> None:
-    two = primordia.load(mill).fork(800, tmp_path / "two", seed=5).path
-    again = primordia.load(mill).fork(800, tmp_path / "again", seed=5).path
-    assert same(two, again)
-    assert not same(mill, two)
-    here_, there = (living(run, 800) for run in (mill, two))
-    assert here_ == there
-    assert len(here_) > 3
-
-
-def living(run: Path, at: int) -> set[tuple[int, ...]]:
-    lives = Archive(run).lives
-    living_then = (lives.born <= at) & ((lives.ended > at) | ~lives.died)
-    columns = (lives.id, lives.parent, lives.cell, lives.born, lives.birth_cause)
-    return set(zip(*(column[living_then].tolist() for column in columns), strict=True))
 
 
 def test_forks_of_forks_keep_the_promises(mill: Path, tmp_path: Path) -> None:
@@ -248,32 +204,10 @@ def test_changed_settings_hold_and_others_stay_as_seasons_left_them(
     assert a["replication"] != pytest.approx(0.01)
 
 
-def test_figures_of_a_fork_include_every_organism(mill: Path, tmp_path: Path) -> None:
-    """Birth numbers of a fork do not start at 0, and have gaps."""
-    fork = primordia.load(mill).fork(750, tmp_path / "fork", seed=2)
-    lives = Archive(fork.path).lives
-    for world in map(lives.of_world, range(2)):
-        assert world.id[-1] > len(world)
-        assert world.rank.tolist() == list(range(len(world)))
-    assert sum(map(len, quarters(lives))) == len(lives)
-    assert len(fork.plot(figures=["survival"], out=tmp_path)) == 2
-
-
-@pytest.mark.parametrize("at", [0, -1, 1501])
-def test_a_fork_before_the_first_tick_or_after_the_last_is_refused(
-    mill: Path, tmp_path: Path, at: int
-) -> None:
-    done = here("fork", mill, "--at", at, "--out", tmp_path / "fork")
-    complains(done, 2, f"--at {at}", "from 1 to 1500")
-    assert not (tmp_path / "fork").exists()
-
-
 @pytest.mark.parametrize(
     "change",
     [
         ("--cells", 64),
-        ("--seeds", 3),
-        ("--brain.hidden", 8),
         ("--brain.kind", "tests.toys:Twin"),
         ("--habitat.name", "tests.toys:Echo"),
     ],
@@ -288,26 +222,12 @@ def test_settings_that_a_living_world_cannot_change_are_refused(
 
 def test_wrong_input_is_an_error_that_says_why(mill: Path, tmp_path: Path) -> None:
     complains(here("fork", mill), 2, "--at")
-    complains(here("fork", mill, "--at", 5, "--colour", 3), 2, "there is no setting 'colour'")
     complains(here("fork", mill, "--at", 5, "--out", mill), 2, "exists already")
-    complains(here("fork", tmp_path / "no", "--at", 5), 2, "is not a run")
+    complains(here("fork", mill, "--at", 5, "--task", "mine"), 2, "remove the setting 'task'")
     fork = primordia.load(mill).fork(5, tmp_path / "fork", stop={"ticks": 6})
     done = here("run", fork.path / "config.toml", "--out", tmp_path / "again")
     complains(done, 2, "these are the settings of a fork")
-
-
-def test_a_fork_cut_off_before_it_began_is_an_error_that_says_why(
-    mill: Path, tmp_path: Path
-) -> None:
-    """The run was killed after its settings and before its origin was written."""
-    fork = primordia.load(mill).fork(5, tmp_path / "fork", stop={"ticks": 6})
-    for folder in ("origin", "checkpoints"):
+    for folder in ("origin", "checkpoints"):  # as if it was killed before its origin was written
         (fork.path / folder).rename(tmp_path / folder)
     with pytest.raises(InputError, match="fork without a first checkpoint"):
         fork.resume()
-
-
-def test_a_fork_has_the_task_of_its_run(mill: Path, tmp_path: Path) -> None:
-    words = ("fork", mill, "--at", 3, "--task", "mine", "--out", tmp_path / "fork")
-    complains(here(*words), 2, "remove the setting 'task'")
-    assert not (tmp_path / "fork").exists()

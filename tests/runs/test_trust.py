@@ -17,25 +17,8 @@ from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import code
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
-from tests.strangers import LIVING, POND, begun, elsewhere, forget, words
+from tests.strangers import LIVING, POND, TASK, begun, elsewhere, forget, words
 from tests.trouble import newest, reseal
-
-
-def test_a_bundle_executes_nothing_until_it_is_trusted(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    run = begun(folder)
-    file = primordia.load(run).bundle(folder / "sent.zip")
-    shutil.move(file, folder.parent / "sent.zip")
-    elsewhere(folder, run, monkeypatch)
-    for command in (["info"], ["plot", "--out", "figures", "--figure", "ages"]):
-        assert here(command[0], folder.parent / "sent.zip", *command[1:]).returncode == 0
-    assert "pond" not in sys.modules
-    stopped = here("relive", folder.parent / "sent.zip", 3)
-    complains(stopped, 2, "executes code that Primordia does not know")
-    assert "pond" not in sys.modules
-    done = here("relive", folder.parent / "sent.zip", 3, "--trust")
-    assert done.returncode == 0, done.stderr
 
 
 def test_code_from_elsewhere_is_executed_only_when_trusted(
@@ -50,6 +33,9 @@ def test_code_from_elsewhere_is_executed_only_when_trusted(
         primordia.load(run).policy()
     trusting = [*words(LIVING[0], run), "--trust"]
     assert here(*trusting).returncode == 0
+    oldest = primordia.load(run).oldest()
+    life = RelivedLife.of(oldest.run, oldest.id, oldest.world)
+    assert sum(len(each.tick) for each in life.stretches()) == oldest.age == 21
     forget()
     done = here(*words(LIVING[2], run))
     assert (done.returncode, done.stderr) == (0, ""), "trust is kept for other commands"
@@ -57,15 +43,6 @@ def test_code_from_elsewhere_is_executed_only_when_trusted(
     forget()
     (run / "code" / "pond_depth.py").write_text("DEPTH = 4.0\n")
     complains(here("verify", run), 1, "pond_depth.py was changed or damaged")
-
-
-def test_a_life_of_code_from_elsewhere_is_lived_again(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    run = elsewhere(folder, begun(folder), monkeypatch)
-    oldest = primordia.load(run, trust=True).oldest()
-    life = RelivedLife.of(oldest.run, oldest.id, oldest.world)
-    assert sum(len(each.tick) for each in life.stretches()) == oldest.age == 21
 
 
 def test_looking_executes_no_code_of_a_run(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -80,6 +57,8 @@ def test_looking_executes_no_code_of_a_run(folder: Path, monkeypatch: pytest.Mon
         ["export", run, run.parent / "genome.safetensors"],
         ["phylogeny", run, "--out", run.parent / "phylogeny.csv"],
         ["compare", run, twin, "--out", run.parent],
+        ["bundle", run, run.parent / "sent.zip"],
+        ["info", run.parent / "sent.zip"],
     ):
         done = here(*command)
         assert done.returncode == 0, done.stderr
@@ -92,17 +71,13 @@ def test_looking_executes_no_code_of_a_run(folder: Path, monkeypatch: pytest.Mon
 
 
 @pytest.mark.slow
-def test_parts_in_several_files_are_trusted_together(
+def test_a_mutation_is_trusted_with_its_habitat(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Also where the trust cannot be stored, as in a home folder that is read-only."""
-    mutation = (
-        "from primordia.mutations.gaussian import Gaussian\n\n\nclass Own(Gaussian):\n    pass\n"
-    )
-    (folder / "pond_mutation.py").write_text(mutation)
-    (folder / "task.toml").write_text(
-        'mutation = { kind = "pond_mutation:Own" }\n' + (folder / "task.toml").read_text()
-    )
+    base = "from primordia.mutations.gaussian import Gaussian"
+    (folder / "pond_mutation.py").write_text(f"{base}\n\n\nclass Own(Gaussian):\n    pass\n")
+    (folder / "task.toml").write_text(f'mutation = {{ kind = "pond_mutation:Own" }}\n{TASK}')
     run = elsewhere(folder, begun(folder), monkeypatch)
     sys.modules.pop("pond_mutation")
     genome = run.parent / "genome.safetensors"
@@ -137,17 +112,17 @@ def test_a_run_of_a_stranger_chooses_no_function_of_an_installed_package(
     complains(here(*words(LIVING[0], run), "--trust"), 2, "pytest:main has no default_params")
 
 
-@pytest.mark.parametrize("name", ["gymnasium", "gymnax"])
-@pytest.mark.parametrize("env", ["evil:", "evil:Pond", "IPython.__main__:", "gymnax.utils:x"])
+@pytest.mark.parametrize(
+    ("name", "env"),
+    [("gymnasium", "evil:"), ("gymnasium", "IPython.__main__:"), ("gymnax", "evil:Pond")],
+)
 def test_every_module_that_a_run_of_a_stranger_names_is_asked_for(
-    env: str, name: str, folder: Path
+    name: str, env: str, folder: Path
 ) -> None:
     run = begun(folder)
     forged(run, name=name, env=env)
     (folder / "evil.py").write_text("open('executed', 'w')")
-    assert (
-        here(*words(LIVING[0], run)).returncode == 2
-    )  # the code is new, so `resume` stops earlier
+    assert here(*words(LIVING[0], run)).returncode == 2, "it is new, so `resume` stops earlier"
     for command in LIVING[1:]:
         complains(here(*words(command, run)), 2, env.partition(":")[0], "--trust")
     assert not (folder / "executed").exists()

@@ -39,7 +39,7 @@ def digests(
     records: dict[str, np.ndarray],
     arrays: Mapping[str, np.ndarray],
     worlds: int,
-    islands: Islands | None = None,
+    islands: Islands,
 ) -> list[str]:
     """Return the digest of each world, hexadecimal.
 
@@ -47,7 +47,7 @@ def digests(
         records: the sums of row hashes of each table, uint64 (W, 2).
         arrays: the state by name, first axis worlds or cells; open tails are left out.
         worlds: number of worlds W.
-        islands: the islands of a world; None: a plain world.
+        islands: the islands of a world.
     """
     state = {name: arrays[name] for name in arrays if not name.startswith("tail.")}
     return [_world_digest(records, state, world, worlds, islands) for world in range(worlds)]
@@ -58,7 +58,7 @@ def _world_digest(
     arrays: dict[str, np.ndarray],
     world: int,
     worlds: int,
-    islands: Islands | None,
+    islands: Islands,
 ) -> str:
     digest = hashlib.sha256()
     for name in sorted(records):
@@ -70,7 +70,7 @@ def _world_digest(
         if name.startswith("world.worlds."):
             digest.update(np.ascontiguousarray(array[world]).tobytes())
             continue
-        cells = range(len(alive)) if islands is None else islands.with_rows(name)
+        cells = islands.with_rows(name)
         mine = array[world * len(cells) : (world + 1) * len(cells)]
         here = alive[cells.start : cells.stop]
         for start in range(0, len(cells), BLOCK):

@@ -17,6 +17,7 @@ from primordia.brains import genomes
 from primordia.config import Config, parsed
 from primordia.errors import InputError, InUseError, Trouble
 from primordia.habitats.contract import AnyHabitat
+from primordia.printable import printable
 from primordia.runs import checkpoint, code, kept
 from primordia.runs.description import Description, from_json
 from primordia.runs.manifest import INPUTS
@@ -25,7 +26,7 @@ from primordia.settings.tables import flat, from_toml
 
 FORMAT = 2
 """format of run directories; other formats are refused"""
-VERSIONS, LOCK = "versions.json", "lock"
+VERSIONS, LOCK, FAULTS = "versions.json", "lock", "faults.txt"
 FOLDERS = (*TABLES, checkpoint.FOLDER)
 GLANCE = 0.05
 """Seconds to wait for a lock, since `is_written` in another process may hold it briefly."""
@@ -164,6 +165,22 @@ def make_folders(run: Path) -> None:
     """
     for name in FOLDERS:
         files.own_folder(run / name)
+
+
+def note_faults(run: Path, lines: list[str]) -> None:
+    """Append the reasons why simulations of bodies failed, a line for each organism that died of it.
+
+    The file is for people and not part of a run's exact records: after an interruption a line may
+    appear twice.
+
+    Raises:
+        InputError: the file is a link, or no regular file. Trouble: the lines cannot be written.
+    """
+    if not lines:
+        return
+    files.check_output(run / FAULTS)
+    with files.writing(run / FAULTS), (run / FAULTS).open("a", encoding="utf-8") as file:
+        file.writelines(printable(line, kept="\t") + "\n" for line in lines)
 
 
 def read_config(run: Path) -> Config:

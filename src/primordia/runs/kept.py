@@ -41,7 +41,7 @@ def copy(config: Config, habitat: AnyHabitat, run: Path) -> Kept:
         Trouble: a file cannot be read or written.
     """
     named = [each for each in files_in(config.habitat) if os.path.isabs(each) and isfile(each)]
-    paths = [Path(path) for path in _with_others(config, {each: each for each in named})]
+    paths = [Path(path) for path in _needed(config, {each: each for each in named})]
     if not paths:
         return Kept("", {})
     found_in = Path(os.path.commonpath([path.parent for path in paths]))
@@ -66,7 +66,10 @@ def copy(config: Config, habitat: AnyHabitat, run: Path) -> Kept:
 def _is_whole(config: Config, habitat: AnyHabitat, copies: set[str]) -> bool:
     """Return whether a habitat can be made of copies alone, and is the same."""
     try:
-        return _needed(config) <= copies and config.build_habitat().versions == habitat.versions
+        return (
+            _needed(config, config.kept) <= copies
+            and config.build_habitat().versions == habitat.versions
+        )
     except InputError:
         return False
 
@@ -93,7 +96,7 @@ def check(config: Config, run: Path, about: Description) -> None:
         if files.sha256(run / FOLDER / name) != sha256:
             raise Trouble(f"{run / FOLDER / name} was changed or damaged: its checksum differs")
     try:
-        more = _needed(config) - {*config.kept.values()} if config.kept else set()
+        more = _needed(config, kept) - {*kept.values()} if (kept := config.kept) else set()
     except ValueError as error:
         raise Trouble(f"{run / FOLDER} cannot be read: {error}") from None
     if more:
@@ -116,12 +119,7 @@ def _places(run: Path, kept: Kept | Description) -> dict[str, str]:
     return {str(Path(kept.files_from, name)): str(folder / name) for name in kept.files}
 
 
-def _needed(config: Config) -> set[str]:
-    """Return the paths of the copies that settings name, and of the files that these need."""
-    return _with_others(config, config.kept)
-
-
-def _with_others(config: Config, places: Mapping[str, str]) -> set[str]:
+def _needed(config: Config, places: Mapping[str, str]) -> set[str]:
     """Return the files that settings name, at their places, and those that these need."""
     tables = [each.habitat for each in config.by_island]
     return {

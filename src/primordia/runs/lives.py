@@ -196,10 +196,6 @@ class Lives:
         """Return the rows of organisms by world and birth number, int64 (n,); -1 if missing."""
         return find_rows(self.world, self.id, world, number)
 
-    def rows_in(self, worlds: np.ndarray, numbers: np.ndarray) -> np.ndarray:
-        """Return each life's row in births that are sorted by world and number, int64 (L,)."""
-        return find_rows(worlds, numbers, self.world, self.id)
-
     def _rows_of_world(self, world: int) -> slice:
         # Numbers of another dtype would make NumPy convert all rows.
         ends = [

@@ -19,7 +19,7 @@ from primordia.engine.engine import Engine
 from primordia.engine.state import Limits
 from primordia.errors import InputError
 from primordia.law.events import Events
-from primordia.runs import checkpoint, directory, faults
+from primordia.runs import checkpoint, directory
 from primordia.runs.archive import Archive
 from primordia.runs.checkpoint import Checkpoint
 from primordia.runs.manifest import Progress
@@ -197,7 +197,7 @@ def drive(
             for events in chain(first, chunks):
                 check()
                 recorder.append(events)
-                faults.note(run, engine.faults)
+                directory.note_faults(run, engine.faults)
                 if listen is not None:
                     try:
                         listen(Status(engine, saver.seconds, limits))

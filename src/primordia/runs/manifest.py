@@ -36,14 +36,8 @@ def _is_input(name: str) -> str:
     return name
 
 
-def _is_table(name: str) -> str:
-    if name not in TABLES:
-        raise ValueError(f"{name} is not a table")
-    return name
-
-
 Input = Annotated[str, AfterValidator(_is_input)]
-Table = Annotated[str, AfterValidator(_is_table)]
+Table = Annotated[str, Field(pattern=f"^({'|'.join(TABLES)})$")]
 
 
 class Part(BaseModel):

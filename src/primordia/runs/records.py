@@ -22,7 +22,7 @@ from primordia.law.law import Law
 from primordia.law.metabolism import ONE
 from primordia.runs.arrays import WORLDS, read_count
 from primordia.runs.description import Description
-from primordia.runs.lives import Lives, joined
+from primordia.runs.lives import Lives, find_rows, joined
 from primordia.runs.manifest import Progress
 from primordia.runs.schema import Schema
 from primordia.settings.limits import Stop
@@ -233,7 +233,7 @@ class Records:
         births = self.table("births", ("world", "id", *columns))
         world, number = births["world"].to_numpy(), births["id"].to_numpy()
         order = np.lexsort((number, world))
-        rows = order[lives.rows_in(world[order], number[order])]
+        rows = order[find_rows(world[order], number[order], lives.world, lives.id)]
         return [births[name].fill_null(-1).to_numpy()[rows] for name in columns]
 
 
@@ -284,9 +284,7 @@ class _Joined(Mapping[str, np.ndarray]):
         return array
 
     def _of(self, run: Records) -> Mapping[str, np.ndarray]:
-        stored = run.state if self._which == "state" else run.origin
-        assert stored is not None
-        return stored
+        return cast(Mapping[str, np.ndarray], getattr(run, self._which))
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names)

@@ -1,6 +1,5 @@
 """The arrays that a checkpoint must hold, according to a run's settings and description."""
 
-from collections.abc import Iterator
 from functools import lru_cache
 from math import prod
 
@@ -101,12 +100,6 @@ def _fits(array: np.ndarray, kind: Kind) -> bool:
     return array.dtype == dtype and array.ndim == len(shape) and all(same)
 
 
-def _count(name: str, *shape: int) -> Iterator[tuple[str, Kind]]:
-    """Yield both words of numbers of 64 bits."""
-    for half in ("hi", "lo"):
-        yield f"{name}.{half}", ("uint32", shape)
-
-
 @lru_cache(maxsize=64)
 def _kinds(
     schema: Schema, blocks: Blocks, moments: int, worlds: int, looks: int
@@ -121,44 +114,38 @@ def _kinds(
         worlds: number of worlds.
         looks: number of ratchets.
     """
-    acts = Acts._fields if schema.endowed else ()
-    tails = {f"tail.{each}": schema.columns(each).width for each in TABLES}
-    return {
-        **dict(_of_worlds(schema, worlds, looks)),
-        **{n: k for each in acts for n, k in _count(f"world.worlds.acts.{each}", worlds)},
-        **dict(_of_organisms(schema, blocks, worlds * schema.cells)),
-        **dict(_of_moments(moments, worlds * schema.cells)),
-        **{name: ("uint32", (None, width)) for name, width in tails.items()},
+    cells = worlds * schema.cells
+    kinds: dict[str, Kind] = {
+        "world.organisms.alive": ("bool", (cells,)),
+        "world.organisms.notes": ("int32", (cells, len(schema.notes))),
+        "world.organisms.memory": ("float32", (cells, None)),
+        "world.organisms.energy": ("int32", (cells,)),
+        "world.organisms.eaten": ("int32", (cells,)),
+        "world.worlds.calm": ("int32", (worlds,)),
+        "world.worlds.sample_wait": ("int32", (worlds,)),
+        "world.worlds.looks.wait": ("int32", (worlds, looks)),
     }
+    kinds |= {f"{GENOME}{name}": ("float32", (cells, *shape)) for name, shape in blocks}
+    kinds |= {f"world.worlds.climate.{rate}": ("float32", (worlds,)) for rate in schema.rates}
+    kinds |= {f"tail.{name}": ("uint32", (None, schema.columns(name).width)) for name in TABLES}
+    for name, shape in _counts(schema, worlds, looks).items():
+        kinds |= {f"world.{name}.hi": ("uint32", shape), f"world.{name}.lo": ("uint32", shape)}
+    if moments:
+        of_moments = "world.organisms.moments."
+        kinds[f"{of_moments}senses"] = kinds[f"{of_moments}memory"] = (
+            "float32",
+            (cells, moments, None),
+        )
+        kinds[f"{of_moments}known"] = ("bool", (cells, moments))
+    return kinds
 
 
-def _of_worlds(schema: Schema, worlds: int, looks: int) -> Iterator[tuple[str, Kind]]:
-    for name in COUNTS:
-        yield from _count(f"world.worlds.{name}", worlds)
-    yield from _count("world.worlds.deaths", worlds, len(Cause))
-    for name in ("calm", "sample_wait"):
-        yield f"world.worlds.{name}", ("int32", (worlds,))
-    for name in schema.rates:
-        yield f"world.worlds.climate.{name}", ("float32", (worlds,))
-    yield "world.worlds.looks.wait", ("int32", (worlds, looks))
-    for name in ("food", "organism_ticks"):
-        yield from _count(f"world.worlds.looks.{name}", worlds, looks)
-
-
-def _of_organisms(schema: Schema, blocks: Blocks, cells: int) -> Iterator[tuple[str, Kind]]:
-    yield "world.organisms.alive", ("bool", (cells,))
-    for name, shape in blocks:
-        yield f"{GENOME}{name}", ("float32", (cells, *shape))
-    yield "world.organisms.notes", ("int32", (cells, len(schema.notes)))
-    yield "world.organisms.memory", ("float32", (cells, None))
-    for name in ("energy", "eaten"):
-        yield f"world.organisms.{name}", ("int32", (cells,))
-    for name in ("born", "number", "branch"):
-        yield from _count(f"world.organisms.{name}", cells)
-
-
-def _of_moments(count: int, cells: int) -> Iterator[tuple[str, Kind]]:
-    if count:
-        for name in ("senses", "memory"):
-            yield f"world.organisms.moments.{name}", ("float32", (cells, count, None))
-        yield "world.organisms.moments.known", ("bool", (cells, count))
+def _counts(schema: Schema, worlds: int, looks: int) -> dict[str, tuple[int, ...]]:
+    """Return the shape of each 64-bit value of worlds and organisms, by name."""
+    return {
+        **{f"worlds.{name}": (worlds,) for name in COUNTS},
+        **{f"worlds.acts.{name}": (worlds,) for name in Acts._fields if schema.endowed},
+        **{f"worlds.looks.{name}": (worlds, looks) for name in ("food", "organism_ticks")},
+        "worlds.deaths": (worlds, len(Cause)),
+        **{f"organisms.{n}": (worlds * schema.cells,) for n in ("born", "number", "branch")},
+    }
