@@ -21,10 +21,7 @@ from tests.commands import complains, here
 from tests.phylogeny.forests import ancestry, frame, parents_of, phyloframe, phylotrack
 from tests.worlds import MILLS, config
 
-WORLDS: dict[str, Any] = {
-    **MILLS,
-    "seed": 5,
-}
+WORLDS: dict[str, Any] = {**MILLS, "seed": 5}
 CLOCKED: dict[str, Any] = {
     "task": "clocked",
     "cells": 8,
@@ -311,7 +308,6 @@ def test_bad_input_is_one_line(family: Path, tmp_path: Path) -> None:
     complains(
         here("phylogeny", run, 10**6, "--out", out), 2, "no organism 1000000 was born in world 0"
     )
-    complains(here("phylogeny", run, 3, "--world", 9, "--out", out), 2, "the worlds are 0 to 1")
     complains(here("phylogeny", run, 3, "--extant", "--out", out), 2, "give one")
     complains(here("phylogeny", run, "--traits", "--out", out), 2, "bodies are not inherited")
     complains(here("phylogeny", run, "--out", tmp_path / "a.xls"), 2, ".parquet, .csv, .nwk")
