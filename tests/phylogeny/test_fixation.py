@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from primordia.history.ancestry import nearest
-from primordia.phylogeny.fixation import UNKNOWN, branches, first_ticks
-from primordia.phylogeny.living import Turnover
+from primordia.phylogeny.fixation import UNKNOWN, first_ticks
+from primordia.phylogeny.living import Turnover, branches
 from primordia.phylogeny.sweeps import sweeps
 from tests.pedigrees import (
     HISTORY,

@@ -6,9 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from primordia.phylogeny.drift import drift
-from primordia.phylogeny.frequencies import founders, instants, lines_of
+from primordia.phylogeny.frequencies import founders, instants
 from primordia.phylogeny.lines import lines_of_world, two_sided
-from primordia.phylogeny.living import Census, Turnover
+from primordia.phylogeny.living import Census, Turnover, branches
 from primordia.phylogeny.slopes import between, observed, of_shadows
 from tests.pedigrees import HISTORY, Event, line_to, lives_of, living_after, moran, walked
 
@@ -68,7 +68,7 @@ def test_an_advantage_that_is_put_in_comes_out_as_the_slope() -> None:
         lives = moran(size, 12_000, 300 + 2 * k, lambda row: 1.0 if row < 100 else 1 - advantage)
         own = founders(lives, 0)
         census = Census(lives, instants(0, 12_000))
-        favoured = census.counts(lines_of(lives, own), size)[:, :100].sum(axis=1)
+        favoured = census.counts(branches(lives.parent_row, own), size)[:, :100].sum(axis=1)
         found += observed(favoured[:, None], census.living, census.ticks).tolist()
     assert np.mean(found) == pytest.approx(-np.log(1 - advantage) / size, rel=0.15)
 
@@ -102,7 +102,7 @@ def test_lines_are_the_descendants_of_the_living_at_a_tick(
     own = founders(lives, at)
     assert own.tolist() == living_after(lives, at)
     census = Census(lives, instants(at, len(history)))
-    counts = census.counts(lines_of(lives, own), len(own))
+    counts = census.counts(branches(lives.parent_row, own), len(own))
     for tick, row, living in zip(census.ticks.tolist(), counts, census.living, strict=True):
         now = living_after(lives, tick)
         first = [next((a for a in line_to(lives, each) if a in own), None) for each in now]
