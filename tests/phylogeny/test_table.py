@@ -1,6 +1,7 @@
 """Phylogenies of invented worlds as tables and trees, against brute force and other readers."""
 
 from dataclasses import replace
+from functools import partial
 from io import StringIO
 from pathlib import Path
 from types import SimpleNamespace
@@ -20,6 +21,7 @@ from primordia.phylogeny.newick import newick
 from primordia.phylogeny.phylogeny import Phylogeny, recorded, stacked
 from primordia.phylogeny.reduce import chosen
 from primordia.phylogeny.table import table
+from primordia.runs.records import Records
 from primordia.settings.islands import Islands
 from tests.phylogeny.forests import (
     FORESTS,
@@ -262,6 +264,22 @@ def test_facts_on_record_are_those_of_each_organism() -> None:
     found = recorded(run)
     assert found.of_births["island"].to_pylist() == ["sea", "lagoon", "lagoon", "sea"]
     assert found.of_births["island_"].to_pylist() == [5, 6, 7, 0]
+
+
+def test_mates_are_read_from_the_births_of_each_organism() -> None:
+    """Births of other worlds and without a mate lie between."""
+    lives = forest([(0, 0, True)] * 3, [(0, 0, True)] * 2).lives
+    births = pa.table({
+        "world": [0, 1, 0, 1, 0], "id": [0, 0, 1, 1, 2], "parent": [None, None, 0, 0, 1],
+        "mate": pa.array([None, None, None, 5, 4], pa.int64()),
+    })  # fmt: skip
+    run: Any = SimpleNamespace(
+        schema=SimpleNamespace(mates=True), table=lambda _, columns: births.select(columns)
+    )
+    run._of_births = partial(Records._of_births, run)
+    assert Records.mates_of(run, lives).tolist() == [-1, -1, 4, -1, 5]
+    run.schema.mates = False
+    assert Records.mates_of(run, lives).tolist() == [-1] * 5
 
 
 def test_facts_of_a_run_and_its_fork_follow_one_another() -> None:
