@@ -231,20 +231,6 @@ def test_plain_values_have_the_quartiles_of_each_outcome() -> None:
         assert against.worlds == 5
 
 
-def test_settings_are_given_if_any_run_has_another_value() -> None:
-    lives = lived(1, 1)
-    changed: list[dict[str, Any]] = [
-        {},
-        {"hazard": 0.1},
-        {"about": "a text"},
-        {"metabolism": {"store": 5.0}},
-    ]
-    arms = compare([run(str(k), lives, **each) for k, each in enumerate(changed)]).arms
-    assert [arm.settings["hazard"] for arm in arms] == [0.0, 0.1, 0.0, 0.0]
-    assert {name.partition(".")[0] for name in arms[0].settings} == {"hazard", "metabolism"}
-    assert arms[0].settings.keys() == arms[3].settings.keys()
-
-
 @pytest.mark.parametrize(("rate", "unit", "span"), [(50.0, "second", 50), (None, "tick", 1)])
 def test_food_is_compared_in_the_unit_of_its_title(
     rate: float | None, unit: str, span: float, monkeypatch: pytest.MonkeyPatch

@@ -17,8 +17,6 @@ from primordia.errors import InputError
 
 WORLD = st.tuples(st.integers(1, 20), st.booleans())
 SOME = st.lists(WORLD, min_size=1, max_size=12)
-ENOUGH = st.lists(WORLD, min_size=LEAST, max_size=12)
-FEW = st.lists(WORLD, min_size=1, max_size=LEAST - 1)
 
 
 def figures(worlds: list[tuple[int, bool]]) -> Measured:
@@ -67,17 +65,6 @@ def test_a_horizon_ignores_what_happens_later(run: list, horizon: int) -> None:
     assert near.value.max() <= horizon
     others = figures([(value if value < horizon else horizon + 7, True) for value, _ in run])
     assert contrast(near, others.before(horizon)).delta == 0
-
-
-@given(FEW, ENOUGH)
-def test_a_run_of_few_worlds_gives_no_interval_and_no_word(few: list, enough: list) -> None:
-    """Delta and the ratio of medians describe the worlds there are, so they remain."""
-    for one, other in ((few, enough), (enough, few), (few, few)):
-        effect = contrast(figures(one), figures(other))
-        assert (effect.interval, effect.word) == (None, None)
-        assert -1 <= effect.delta <= 1
-    assert contrast(figures(enough), figures(enough)).word == "negligible"
-    assert contrast(figures(enough), figures(enough)).interval is not None
 
 
 def test_resamples_are_even_and_independent() -> None:
@@ -160,10 +147,3 @@ def test_the_number_of_resamples_grows_with_the_number_of_contrasts() -> None:
     ]
     ratios = np.sort(medians[0] / medians[1])
     assert contrast(run, reference, contrasts=4).interval == (ratios[10], ratios[-1 - 10])
-
-
-def test_the_world_that_stopped_before_a_horizon_is_named() -> None:
-    """World 0 is unsaturated too, but has passed the horizon. World 1 saturated before it."""
-    worlds = figures([(50, False), (30, True), (40, False), (20, False)])
-    with pytest.raises(InputError, match=r"world 2 stopped at 40 before .* saturated at 45"):
-        worlds.before(45)

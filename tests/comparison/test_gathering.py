@@ -36,14 +36,6 @@ def test_late_food_is_that_of_the_last_quarter() -> None:
     assert found.late.known.all()
 
 
-def test_food_is_known_if_any_world_gathered_some() -> None:
-    """The second world gathered none."""
-    tick = np.arange(0, 121, 10)
-    found = gathering(run(tick, np.outer([2, 0], tick), np.outer([5, 5], tick)), 2, 0, 120, 10)
-    assert (found.late.value.tolist(), found.late.known.tolist()) == ([4, 0], [True, True])
-    np.testing.assert_allclose(found.curve, np.repeat([[4.0], [0.0]], 12, axis=1))
-
-
 def test_metrics_are_not_read_if_no_world_gathered_food() -> None:
     tick = np.arange(0, 121, 10)
     unfed = run(tick, np.outer([0, 0], tick), np.outer([5, 5], tick))

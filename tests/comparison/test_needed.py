@@ -66,7 +66,8 @@ def test_an_interval_leaves_out_its_share_of_resamples_and_not_only_the_last(
 ) -> None:
     missed = 0.05 / contrasts
     count = enough(missed)
-    low, high = interval(np.arange(float(count)), missed)
-    assert 10 <= low == count - 1 - high
-    assert low == pytest.approx(count * missed / 2, abs=1)
+    values = np.arange(float(count))
+    low, high = interval(np.stack([values, -values], axis=1), missed)
+    assert 10 <= low[0] == count - 1 - high[0] == -high[1] == low[1] + count - 1
+    assert low[0] == pytest.approx(count * missed / 2, abs=1)
     assert enough(0.05) == RESAMPLES

@@ -9,9 +9,8 @@ from hypothesis import strategies as st
 
 from primordia.comparison.measured import Measured
 from primordia.comparison.moments import first_long, often_saturated
-from primordia.comparison.resample import RESAMPLES, interval
 from primordia.comparison.survival import survival
-from tests.synthetic import LIVED, alive, world_of, worlds_of
+from tests.synthetic import LIVED, world_of, worlds_of
 
 Lived = list[tuple[int, int, bool]]
 UNTIL = 90
@@ -27,33 +26,6 @@ def test_at_risk_are_those_on_record_at_an_age(one: Lived, other: Lived, begin: 
         lived = lives.of_world(world)
         at_risk = [((lived.entered < age) & (age <= lived.lifespan)).sum() for age in estimate.ages]
         assert estimate.at_risk[world].tolist() == at_risk
-
-
-@given(LIVED, st.integers(0, UNTIL))
-def test_a_record_that_ends_in_a_tick_holds_the_deaths_of_that_tick(lived: Lived, end: int) -> None:
-    """Who is dead at the end of the last tick is no longer censored."""
-    world = world_of(lived, until=UNTIL)
-    cut = world.recorded_until(end)
-    assert cut.id.tolist() == world.id[world.born <= end].tolist()
-    for row in range(len(cut)):
-        assert alive(world, row, end) == (not cut.died[row])
-        assert cut.ended[row] == (end if not cut.died[row] else world.ended[row])
-        assert not cut.died[row] or cut.cause[row] == world.cause[row]
-
-
-@given(LIVED, st.integers(0, UNTIL))
-def test_a_record_that_begins_in_a_tick_lacks_the_dead_of_that_tick(
-    lived: Lived, begin: int
-) -> None:
-    world = world_of(lived, until=UNTIL)
-    later = world.recorded_since(begin)
-    known = [
-        row
-        for row in range(len(world))
-        if world.born[row] > begin or alive(world, row, begin) or not world.died[row]
-    ]
-    assert later.id.tolist() == world.id[known].tolist()
-    assert later.seen.tolist() == np.maximum(world.born[known], begin).tolist()
 
 
 @given(LIVED, LIVED, st.integers(1, 45))
@@ -90,14 +62,6 @@ def test_worlds_saturate_often_if_at_least_half_of_them_do(worlds: int) -> None:
                 for name, count in counts.items()
             }
             assert often_saturated(measured) == (min(counts.values()) >= worlds / 2)
-
-
-def test_an_interval_holds_95_percent_of_the_resamples() -> None:
-    values = np.random.default_rng(0).permutation(RESAMPLES).astype(float)
-    assert interval(values) == (25, RESAMPLES - 1 - 25)
-    low, high = interval(np.stack([values, -values], axis=1))
-    assert low.tolist() == [25, -974]
-    assert high.tolist() == [974, -25]
 
 
 @given(st.lists(st.tuples(st.integers(1, 30), st.booleans()), min_size=1, max_size=15))

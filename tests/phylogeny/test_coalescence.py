@@ -3,7 +3,6 @@
 from collections import Counter
 from dataclasses import replace
 from itertools import combinations
-from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -11,7 +10,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from primordia.law.world import Cause
-from primordia.phylogeny import diversity
 from primordia.phylogeny.coalescence import Genealogy, neutral, observed
 from primordia.phylogeny.diversity import hill_numbers, phylogenetic_diversity
 from primordia.phylogeny.living import Turnover, last_era
@@ -64,36 +62,27 @@ def test_the_common_ancestor_is_the_youngest_on_all_lines(
 
 def tree_length(lives: Lives, tick: int) -> int:
     """Return the length of the tree of those alive after a tick: who carries their lines in each tick."""
-    length = 0
+    length, parents = 0, lives.parent_row.tolist()
     for then in range(tick):
         carriers = set()
         for row in living_after(lives, tick):
-            carriers |= set([each for each in line_to(lives, row) if lives.born[each] <= then][:1])
+            while row >= 0 and lives.born[row] > then:
+                row = parents[row]
+            carriers |= {row} - {-1}
         length += len(carriers)
     return length
 
 
-@given(history=HISTORY, founders=st.integers(1, 3), rows=st.integers(1, 9))
+@given(history=HISTORY, founders=st.integers(1, 3), since=st.integers(0, 9))
 def test_the_tree_of_the_living_is_as_long_as_their_lines(
-    history: list[Event], founders: int, rows: int
+    history: list[Event], founders: int, since: int
 ) -> None:
-    """The records are read in parts. A long pedigree has many parts."""
-    lives = walked(history, founders)
-    ticks = np.arange(0, len(history) + 1, 3)
-    with patch.object(diversity, "ROWS", rows):
-        found = phylogenetic_diversity(lives, ticks)
-    assert found.tolist() == [tree_length(lives, tick) for tick in ticks.tolist()]
-
-
-def test_a_tree_by_hand() -> None:
-    """A founder with children at ticks 2 and 4 dies at 5; the first child has one at 6; 9 is the end."""
-    lives = lives_of([-1, 0, 0, 1], [0, 2, 4, 6], [5, 9, 9, 9], [True, False, False, False])
-    assert phylogenetic_diversity(lives, np.array([1, 3, 5, 9])).tolist() == [
-        *(1, 1 + 2 + 1, 4 + 3 + 1, 4 + 7 + 5 + 3)
-    ]
-    times = observed(Genealogy.of(lives))
-    assert times.back.tolist() == [3, 7]
-    assert times.share.tolist() == [1 / 3, 1]
+    """The tree of a fork begins with the births of those alive at it."""
+    since = min(since, len(history))
+    lives = walked(history, founders).recorded_since(since)
+    ticks = np.arange(since, len(history) + 1, 3)
+    expected = [tree_length(lives, tick) for tick in ticks.tolist()]
+    assert phylogenetic_diversity(lives, ticks).tolist() == expected
 
 
 def test_drift_gives_the_times_of_a_moran_process() -> None:
@@ -164,17 +153,24 @@ GROWN: list[Event] = [([0], []), ([0, 1], []), ([2], [1]), ([1, 3], []), ([], [2
 
 
 def test_times_by_drift_alone_follow_from_births_and_population_since_the_founding() -> None:
-    """The population grows and shrinks. Founders, and births before an extinction, do not count."""
+    """The population grows and shrinks. Founders, and births before an extinction or up to the tick
+    of a fork, do not count."""
     died_out: list[Event] = [([0], []), ([], [0, 1])]
-    for lives, since in ((walked(GROWN), 0), (walked(died_out + GROWN), 2)):
+    fork = walked(GROWN + GROWN).recorded_since(8)
+    assert (fork.born == 8).any()
+    for lives, since, births in (
+        (walked(GROWN), 0, 5),
+        (walked(died_out + GROWN), 2, 5),
+        (fork, 8, 3),
+    ):
         expected = chance_to_have_met(lives, since)
-        assert len(expected) == 5
+        assert len(expected) == births
         era = last_era(lives)
         times = neutral(era, Turnover.of(era))
         found = dict(zip(times.back.tolist(), times.share.tolist(), strict=True))
         assert found == pytest.approx(expected)
         reached = [back for back, share in expected.items() if share >= 0.5]
-        assert times.median == reached[0]
+        assert times.median == next(iter(reached), None)
 
 
 def test_times_in_a_world_without_life_count_back_from_its_last_tick() -> None:
@@ -194,30 +190,3 @@ def test_founders_have_no_times_by_drift_alone() -> None:
     assert (times.share.tolist(), times.mean, times.median) == ([0, 0], None, None)
     observed_times = observed(Genealogy.of(lives))
     assert (observed_times.mean, observed_times.median) == (None, None)
-
-
-def test_times_by_drift_alone_in_a_fork_follow_from_births_after_it() -> None:
-    """Births up to the tick of the fork do not count."""
-    lives = walked(GROWN + GROWN)
-    fork = lives.recorded_since(8)
-    assert (fork.born == 8).any()
-    expected = chance_to_have_met(lives, since=8)
-    times = neutral(fork, Turnover.of(fork))
-    assert dict(zip(times.back.tolist(), times.share.tolist(), strict=True)) == pytest.approx(
-        expected
-    )
-
-
-def test_the_tree_of_a_fork_begins_with_the_births_of_those_alive_at_it() -> None:
-    fork = walked(GROWN + GROWN).recorded_since(8)
-    end, parents = int(fork.ended.max()), fork.parent_row.tolist()
-    length = 0
-    for tick in range(end):
-        carriers = set()
-        for row in living_after(fork, end):
-            line = [row]
-            while parents[line[-1]] >= 0:
-                line.append(parents[line[-1]])
-            carriers |= set([each for each in line if fork.born[each] <= tick][:1])
-        length += len(carriers)
-    assert phylogenetic_diversity(fork, np.array([end])).tolist() == [length]

@@ -18,13 +18,10 @@ from primordia.runs.archive import Archive
 from primordia.runs.fork import fork
 from primordia.runs.manifest import Progress
 from tests.commands import complains, here
+from tests.phylogeny import WORLDS, live
 from tests.phylogeny.forests import ancestry, frame, parents_of, phyloframe, phylotrack
-from tests.worlds import MILLS, config
+from tests.worlds import config
 
-WORLDS: dict[str, Any] = {
-    **MILLS,
-    "seed": 5,
-}
 CLOCKED: dict[str, Any] = {
     "task": "clocked",
     "cells": 8,
@@ -34,22 +31,6 @@ CLOCKED: dict[str, Any] = {
     "mutation": {"kind": "heritable"},
     "habitat": {"name": "tests.toys:Clocked", "angle_limit": 90.0},
 }
-
-
-def live(path: Path, ticks: int, **settings: Any) -> Path:
-    loop.start(config({**WORLDS, **settings, "stop": {"ticks": ticks}}), path)
-    return path
-
-
-@pytest.fixture(scope="module")
-def family(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Make a run, its fork and a fork of that, without changes, and a fork with another seed."""
-    folder = tmp_path_factory.mktemp("family")
-    run = primordia.load(live(folder / "run", 300))
-    fork = run.fork(100, folder / "fork")
-    fork.fork(200, folder / "again", stop={"ticks": 300})
-    fork.fork(200, folder / "other", seed=77, stop={"ticks": 300})
-    return folder
 
 
 def lineage(run: Path, *words: object) -> pa.Table:
@@ -280,19 +261,6 @@ def test_children_of_two_parents_list_both(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_fork_that_begins_to_recombine_lists_mates_of_its_own(
-    family: Path, tmp_path: Path
-) -> None:
-    settings = {"recombination": {"probability": 0.7}, "stop": {"ticks": 200}}
-    forked = primordia.load(family / "run").fork(100, tmp_path / "fork", settings)
-    rows = frame(lineage(forked.path))
-    two = rows["ancestor_list"].str.contains(",")
-    assert two.sum() > 5
-    assert (rows["origin_time"][two] > 100).all()
-    assert phyloframe.alifestd_validate(rows.drop(columns="ancestor_id"))
-
-
-@pytest.mark.slow
 def test_what_habitats_count_and_mutations_note_are_columns(tmp_path: Path) -> None:
     run = tmp_path / "run"
     loop.start(config({**CLOCKED, "stop": {"ticks": 300}}), run)
@@ -311,7 +279,6 @@ def test_bad_input_is_one_line(family: Path, tmp_path: Path) -> None:
     complains(
         here("phylogeny", run, 10**6, "--out", out), 2, "no organism 1000000 was born in world 0"
     )
-    complains(here("phylogeny", run, 3, "--world", 9, "--out", out), 2, "the worlds are 0 to 1")
     complains(here("phylogeny", run, 3, "--extant", "--out", out), 2, "give one")
     complains(here("phylogeny", run, "--traits", "--out", out), 2, "bodies are not inherited")
     complains(here("phylogeny", run, "--out", tmp_path / "a.xls"), 2, ".parquet, .csv, .nwk")
@@ -324,9 +291,6 @@ def test_bad_input_is_one_line(family: Path, tmp_path: Path) -> None:
     (tmp_path / "folder.csv").mkdir()
     complains(here("phylogeny", run, "--out", tmp_path / "folder.csv"), 2, "is a folder")
     nothing = config({**WORLDS, "stop": {"ticks": 300}})
-    with directory.create(tmp_path / "begun", nothing):
-        pass
-    complains(here("phylogeny", tmp_path / "begun", "--out", out), 2, "has no checkpoint yet")
     with directory.create(tmp_path / "empty", nothing):
         engine = Engine(nothing)
         progress = Progress(limits=nothing.stop, wall_s=0.0, exact=True)

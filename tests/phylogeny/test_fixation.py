@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from primordia.history.ancestry import nearest
-from primordia.phylogeny.fixation import UNKNOWN, branches, first_ticks
-from primordia.phylogeny.living import Turnover
+from primordia.phylogeny.fixation import UNKNOWN, first_ticks
+from primordia.phylogeny.living import Turnover, branches
 from primordia.phylogeny.sweeps import sweeps
 from tests.pedigrees import (
     HISTORY,
@@ -85,30 +85,10 @@ def test_sweeps_are_the_changes_of_the_common_ancestor(history: list[Event], fou
         assert each.half is not None
         assert share_after(lives, each.organism, each.half) > 0.5
         assert share_after(lives, each.organism, each.half - 1) <= 0.5
-        if each.fixed is not None:
-            assert each.duration == each.fixed - lives.born[each.organism]
-            assert each.living == len(living_after(lives, each.fixed))
-
-
-def test_a_sweep_by_hand() -> None:
-    """The first of two founders has a child at tick 2, which has two; the second dies at tick 8."""
-    lives = lives_of(
-        parent=[-1, -1, 0, 2, 2],
-        born=[0, 0, 2, 4, 5],
-        ended=[6, 8, 9, 9, 9],
-        died=[True, True, False, False, False],
-    )
-    (only,) = sweeps(lives)
-    assert (only.organism, only.born, only.half, only.fixed, only.duration) == (2, 2, 5, 8, 6)
-    assert (only.birth_cause, only.living) == ("mutant", 3)
-
-
-def test_a_sweep_that_is_under_way_is_the_youngest_beyond_one_half() -> None:
-    """The founder is alive, and of four others three descend from its child of tick 2."""
-    lives = lives_of([-1, 0, 1, 1, 0], [0, 2, 3, 4, 5], [9] * 5, [False] * 5)
-    (only,) = sweeps(lives)
-    assert (only.organism, only.half, only.fixed, only.duration) == (1, 3, None, None)
-    assert only.living == 3
+        assert (each.birth_cause, each.born) == ("mutant", lives.born[each.organism])
+        then = each.half if each.fixed is None else each.fixed
+        assert each.living == len(living_after(lives, then))
+        assert each.duration == (None if each.fixed is None else each.fixed - each.born)
 
 
 def test_of_two_sweeps_under_way_the_younger_counts() -> None:

@@ -80,39 +80,6 @@ def test_a_run_until_its_fork_and_the_fork_are_the_whole_life(
     ]
 
 
-def test_the_past_ends_with_the_first_run_that_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each fork is joined with its own source, at its own tick."""
-    sources = {"d": ("c", 6), "c": ("b", 4), "b": ("a", 2)}
-    runs: dict[str, Any] = {
-        name: SimpleNamespace(
-            path=Path(name),
-            config=SimpleNamespace(fork=SimpleNamespace(run=of, tick=tick)),
-            ends=np.array([END, END]),
-            origin=tick,
-        )
-        for name, (of, tick) in sources.items()
-    }
-
-    def recorded(run: Any) -> Phylogeny:
-        return with_facts(WHOLE.recorded_since(run.origin), 0)
-
-    def opened(place: Path) -> Any:
-        if place.name not in runs:
-            raise InputError(f"{place} is no run")
-        return runs[place.name]
-
-    monkeypatch.setattr(forks, "recorded", recorded)
-    monkeypatch.setattr(forks, "archive", opened)
-    monkeypatch.setattr(forks, "read_count", lambda tick, _: births_by(tick))
-    said: list[str] = []
-    past = forks.whole_past(runs["d"], said.append)
-    assert [run.path.name for run in past.runs] == ["d", "c", "b"]
-    check_lives(past.whole.lives, recorded(runs["b"]).rooted().lives)
-    (line,) = said
-    assert "b was forked from a, which is missing or was replaced by another run" in line
-    assert line.endswith("the organisms alive at tick 2 are roots")
-
-
 def test_worlds_with_large_numbers_keep_their_order(monkeypatch: pytest.MonkeyPatch) -> None:
     """The numbers of the two worlds are 0 and 256, which have the same last eight bits."""
     births = np.zeros(257, int)

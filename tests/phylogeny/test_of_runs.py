@@ -2,13 +2,9 @@
 
 import json
 from pathlib import Path
-from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 import primordia
 from primordia.cli.descent import _sweeps_text
@@ -17,16 +13,10 @@ from primordia.history.pedigree import genomes
 from primordia.history.rebuilding import changes
 from primordia.law.world import BirthCause
 from primordia.phylogeny import drift, slopes
-from primordia.phylogeny.descent import Ancestors
 from primordia.phylogeny.sweeps import Sweep
-from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
-from tests.synthetic import world_of
-from tests.worlds import MEADOW, MILLS, config
-
-LIVES: dict[str, Any] = {**MILLS, "replication": 0.12}
-MATES: dict[str, Any] = {**LIVES, "recombination": {"probability": 0.8}}
+from tests.phylogeny import live
 
 
 @pytest.fixture(autouse=True)
@@ -36,36 +26,23 @@ def _few_shadows(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("primordia.phylogeny.slopes.MOST", slopes.FEWEST)
 
 
-@pytest.fixture(scope="module")
-def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Make a run of two worlds, in which half of all children are mutants."""
-    where = tmp_path_factory.mktemp("descent") / "run"
-    loop.start(config(LIVES, stop={"ticks": 300}), where)
-    return where
+@pytest.fixture
+def run(family: Path) -> Path:
+    """Return a run of two worlds."""
+    return family / "run"
 
 
-@pytest.fixture(scope="module")
-def forked(run: Path) -> Path:
-    """Fork it at tick 200."""
-    return primordia.load(run).fork(200, run.parent / "fork", stop={"ticks": 320}).path
+@pytest.fixture
+def forked(family: Path) -> Path:
+    """Return its fork at tick 100."""
+    return family / "fork"
 
 
-@pytest.fixture(scope="module")
-def mated(run: Path) -> Path:
-    """Make a run in which most children have two parents."""
-    loop.start(config(MATES, stop={"ticks": 200}), run.parent / "mated")
-    return run.parent / "mated"
-
-
-@pytest.mark.parametrize("which", ["run", pytest.param("mated", marks=pytest.mark.slow)])
-def test_a_line_has_its_lives_and_the_changes_of_its_genomes(
-    which: str, request: pytest.FixtureRequest
-) -> None:
-    path = request.getfixturevalue(which)
-    found, oldest = primordia.load(path).ancestors(), primordia.load(path).oldest()
+def test_a_line_has_its_lives_and_the_changes_of_its_genomes(run: Path) -> None:
+    found, oldest = primordia.load(run).ancestors(), primordia.load(run).oldest()
     assert (found.organism, found.world) == (oldest.id, oldest.world)
     assert found.line.id.tolist() == oldest.descent()
-    opened = Archive(path)
+    opened = Archive(run)
     rows = np.array([opened.lives.row(each, found.world) for each in found.line.id])
     assert found.children.tolist() == [(opened.lives.parent_row == row).sum() for row in rows]
     made, blocks = genomes(opened, rows), np.cumsum(opened.layout.sizes)[:-1]
@@ -76,51 +53,27 @@ def test_a_line_has_its_lives_and_the_changes_of_its_genomes(
         assert found.changes[place] == pytest.approx(norms, rel=1e-5)
     known = np.isfinite(found.changes).all(axis=1)
     founder = found.line.birth_cause == BirthCause.FOUNDER
-    if which != "mated":
-        assert (known == ~founder).all()
-        copies = known & (found.line.birth_cause == BirthCause.COPY)
-        assert not found.changes[copies].any()
+    assert (known == ~founder).all()
+    copies = known & (found.line.birth_cause == BirthCause.COPY)
+    assert not found.changes[copies].any()
     assert known.sum() > 3
 
 
 @pytest.mark.parametrize("world", [0, 1])
-def test_a_line_goes_on_through_forks(run: Path, forked: Path, world: int) -> None:
+def test_a_line_goes_on_through_forks(run: Path, family: Path, world: int) -> None:
     """A fork of a fork without changes lives on as the run does, so their lines are the same."""
-    again = run.parent / "again"
-    if not again.exists():
-        primordia.load(forked).fork(250, again, stop={"ticks": 300})
+    again = family / "again"
     last = int(primordia.load(run).lives().of_world(world).id[-1])
     whole = primordia.load(run).ancestors(last, world)
-    assert np.histogram(whole.line.born, [0, 200, 250, 300])[0].min() > 0
+    assert np.histogram(whole.line.born, [0, 100, 200, 300])[0].min() > 0
     assert primordia.load(again).ancestors(last, world).to_dict() == whole.to_dict()
-    older = int(whole.line.id[whole.line.born <= 200][-1])
+    older = int(whole.line.id[whole.line.born <= 100][-1])
     part = primordia.load(again).ancestors(older, world).to_dict()
     assert part == primordia.load(run).ancestors(older, world).to_dict()
 
 
-@pytest.mark.slow
-def test_a_line_in_a_fork_with_another_future_has_the_changes_of_both(
-    run: Path, tmp_path: Path
-) -> None:
-    """The fork mutates more, and the genomes along the line are those that both runs make again."""
-    other = primordia.load(run).fork(
-        200, tmp_path / "other", seed=8, mutation={"scale": 3.0}, stop={"ticks": 300}
-    )
-    found = other.ancestors(world=0)
-    late = found.line.born > 200
-    assert min(late.sum(), (~late).sum()) > 1
-    made = [
-        (other if new else primordia.load(run)).organism(int(number)).genome()
-        for number, new in zip(found.line.id, late, strict=True)
-    ]
-    assert found.size is not None
-    norms = [np.linalg.norm(part) for part in np.diff(made, axis=0).astype(float)]
-    assert found.size[1:] == pytest.approx(norms, rel=1e-5)
-    assert found.unknown is None
-
-
 def test_without_its_source_a_line_ends_at_the_fork(run: Path, tmp_path: Path) -> None:
-    fork = primordia.load(run).fork(200, tmp_path / "fork", stop={"ticks": 320})
+    fork = primordia.load(run).fork(200, tmp_path / "fork", stop={"ticks": 300})
     whole = fork.ancestors(world=1)
     kept = run.rename(run.parent / "kept")
     try:
@@ -139,11 +92,13 @@ def test_without_its_source_a_line_ends_at_the_fork(run: Path, tmp_path: Path) -
         kept.rename(run)
 
 
-def test_changes_before_a_fork_are_left_out_if_the_code_there_is_untrusted(
+def test_changes_of_untrusted_code_are_left_out(
     run: Path, forked: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    untrusted = [run]
+
     def refuse(opened: Archive, organism: int, world: int) -> np.ndarray:
-        if opened.path == run:
+        if opened.path in untrusted:
             raise InputError("its code is not trusted")
         return changes(opened, organism, world)
 
@@ -152,32 +107,16 @@ def test_changes_before_a_fork_are_left_out_if_the_code_there_is_untrusted(
     found = primordia.load(forked).ancestors(world=0)
     assert found.size is not None
     assert whole.size is not None
-    late = found.line.born > 200
+    late = found.line.born > 100
     np.testing.assert_array_equal(found.size[late], whole.size[late])
     assert np.isnan(found.size[~late]).all()
     printed = here("ancestors", forked, "--world", 0).stdout
     assert "The changes before a fork are unknown: its code is not trusted." in printed
-
-
-@pytest.mark.slow
-def test_lines_in_a_fork_are_founded_at_it(forked: Path) -> None:
-    (lines,) = primordia.load(forked).lineages(world=1)
-    assert lines.ticks[0] == 200
-    assert sorted(lines.lives.id[lines.founders]) == sorted(lines.lives.id[lines.lives.born <= 200])
-
-
-def test_mutations_of_untrusted_code_are_left_out(
-    run: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def refuse(*_: object) -> None:
-        raise InputError("its code is not trusted")
-
-    monkeypatch.setattr("primordia.phylogeny.descent.changes", refuse)
-    found = primordia.load(run).ancestors(world=0)
-    assert found.size is None
-    assert found.to_dict()["line"][-1]["change"] is None
-    printed = here("ancestors", run, "--world", 0, "--out", run.parent / "without")
-    assert "The changes are unknown: its code is not trusted." in printed.stdout
+    untrusted.append(forked)
+    found = primordia.load(forked).ancestors(world=0)
+    assert (found.size, found.to_dict()["line"][-1]["change"]) == (None, None)
+    printed = here("ancestors", forked, "--world", 0, "--out", run.parent / "without").stdout
+    assert "The changes are unknown: its code is not trusted." in printed
 
 
 def test_the_commands_print_tables_and_json_and_draw(run: Path, tmp_path: Path) -> None:
@@ -233,57 +172,23 @@ def test_bad_input_is_one_line(run: Path, words: list, part: str) -> None:
 
 
 @pytest.mark.slow
-def test_lines_of_a_world_that_died_out_are_lost(tmp_path: Path) -> None:
-    """All 16 founders die at once, and so do their successors."""
-    starving = {
-        **MEADOW,
-        "replication": 0.0,
-        "genesis": "fill",
-        "metabolism": {"store": 30.5},
-        "stop": {"ticks": 40},
-    }
-    loop.start(config(starving), tmp_path / "run")
-    (first,) = primordia.load(tmp_path / "run").lineages(at=1)
-    assert first.counts[0].tolist() == [1] * 16
-    assert first.counts[-1].tolist() == [0] * 16
-    assert first.drift.final.max() == 0
-    assert first.p_of_effective == 1
-    found = primordia.load(tmp_path / "run").ancestors()
-    assert (found.common, found.roots) == (None, 16)
-    assert "They descend from 16 organisms" in here("ancestors", tmp_path / "run").stdout
-
-
-@pytest.mark.slow
 def test_without_heredity_lines_go_on_and_a_line_of_descent_does_not(tmp_path: Path) -> None:
     """The control's children are random founders that have a mother; lines are hers, genomes are not."""
-    loop.start(config({**LIVES, "inheritance": "founder"}, stop={"ticks": 200}), tmp_path / "run")
-    assert len(primordia.load(tmp_path / "run").ancestors().line) == 1
-    (first, *_) = primordia.load(tmp_path / "run").lineages()
+    run = primordia.load(live(tmp_path / "run", 200, inheritance="founder"))
+    assert len(run.ancestors().line) == 1
+    (first, *_) = run.lineages()
     assert first.shares[-1].max() > 0.2
 
 
-@given(lived=st.lists(st.integers(0, 50), min_size=1, max_size=90))
-def test_a_table_has_the_first_the_last_and_the_largest_gain(lived: list[int]) -> None:
-    line = world_of([(place, each, True) for place, each in enumerate(lived)], until=200)
-    found: Any = SimpleNamespace(line=line)
-    places = Ancestors.telling(found, 20).tolist()
-    assert places == sorted(set(places))
-    assert min(len(lived), 15) <= len(places) <= 20
-    assert {0, len(lived) - 1} <= set(places)
-    span = np.maximum(line.lifespan, 1)
-    gains = span[1:] / span[:-1]
-    if len(gains) and (gains == gains.max()).sum() == 1:
-        assert gains.argmax() + 1 in places
-
-
-def test_the_median_of_an_even_number_of_sweeps_is_between_the_middle_two() -> None:
-    done = [Sweep(number, "copy", 0, 1, fixed, 3) for number, fixed in enumerate((1000, 4003))]
-    assert _sweeps_text(done) == "Sweeps to all of the living: 2; median duration: 2,501.5 ticks."
-
-
-def test_one_long_sweep_does_not_move_the_median_of_three() -> None:
+@pytest.mark.parametrize(
+    ("times", "median"),
+    [(((0, 1000), (0, 4003)), "2,501.5"), (((0, 40), (10, 17), (20, 9020), (30, None)), "40")],
+)
+def test_the_median_duration_is_that_of_sweeps_to_all_of_the_living(
+    times: tuple[tuple[int, int | None], ...], median: str
+) -> None:
     """A sweep that is under way has no duration."""
-    times = ((0, 40), (10, 17), (20, 9020), (30, None))
     some = [Sweep(n, "copy", born, born + 1, fixed, 3) for n, (born, fixed) in enumerate(times)]
-    text = _sweeps_text(some)
-    assert text.startswith("Sweeps to all of the living: 3; median duration: 40 ticks.")
+    done = sum(fixed is not None for _, fixed in times)
+    text = f"Sweeps to all of the living: {done}; median duration: {median} ticks."
+    assert _sweeps_text(some).startswith(text)

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from primordia import config, files
@@ -17,6 +18,7 @@ from tests.commands import here
 
 TASK = "CartPole-survival"
 HALF, TICKS = 1_500, 4_000
+Arrays = dict[str, np.ndarray]
 SMALL = (TASK, "--cells", "8", "--hazard", "0.002", "--quiet")
 
 
@@ -51,11 +53,11 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {str(path): path.read_bytes() for path in paths}
 
 
-def flip(path: Path, at: float = 0.5) -> None:
+def flip(path: Path) -> None:
     """Flip one bit, or add one to an empty file."""
     data = bytearray(path.read_bytes())
     data = data or bytearray(1)
-    data[int(len(data) * at)] ^= 1
+    data[len(data) // 2] ^= 1
     path.write_bytes(data)
 
 
@@ -75,6 +77,21 @@ def reseal(folder: Path, change: Callable[[dict[str, Any]], object] | None = Non
     if change is not None:
         change(content)
     path.write_text(json.dumps({**content, "sha256": manifest._checksum(content)}))
+
+
+def rewrite(folder: Path, change: Callable[[Arrays], object]) -> None:
+    """Change the arrays of a checkpoint, and seal it again."""
+    with np.load(folder / "state.npz") as stored:
+        arrays = dict(stored)
+    change(arrays)
+    np.savez(folder / "state.npz", allow_pickle=True, **arrays)
+    reseal(folder)
+
+
+def recount(arrays: Arrays, name: str, number: int) -> None:
+    """Give a count of all worlds a number of 64 bits."""
+    arrays[f"world.worlds.{name}.hi"][:] = number >> 32
+    arrays[f"world.worlds.{name}.lo"][:] = number & 0xFFFFFFFF
 
 
 def newest(run: Path) -> Path:

@@ -22,7 +22,7 @@ import tomli_w
 
 from primordia.runs import loop
 from tests.commands import here, watched
-from tests.trouble import newest, reseal
+from tests.trouble import Arrays, newest, reseal, rewrite
 from tests.worlds import HERD, config
 
 COMMANDS = [
@@ -50,23 +50,10 @@ COMMANDS = [
     ["assay", "line", "{run}", "--ticks", "20"],
 ]
 
-NUMBERS: list[Any] = [
+ODD: list[Any] = [
     *(0, -1, 2**30, 2**31, 2**53 - 1, 2**62, 2**63, 2**64, 10**400),
     *(0.5, -0.0, 5e-324, 1e308, float("nan"), float("inf")),
-]
-ODD: list[Any] = [
-    *NUMBERS,
-    None,
-    True,
-    "",
-    "x",
-    "\x1b[31m\0",
-    "²",
-    [],
-    {},
-    [[]],
-    {"a": 1},
-    ["x"] * 3,
+    *(None, True, "", "x", "\x1b[31m\0", "²", [], {}, [[]], {"a": 1}, ["x"] * 3),
 ]
 
 
@@ -148,11 +135,12 @@ def nested(draw: random.Random, tree: Any) -> None:
         tree[key] = draw.choice(ODD)
 
 
-def json_changed(draw: random.Random, run: Path) -> None:
-    path = run / draw.choice(["versions.json", "description.json"])
-    content = json.loads(path.read_text())
-    nested(draw, content)
-    path.write_text(json.dumps(content))
+def values_changed(draw: random.Random, run: Path) -> None:
+    path = run / draw.choice(["versions.json", "description.json", "config.toml"])
+    toml, text = path.suffix == ".toml", path.read_text()
+    values = tomllib.loads(text) if toml else json.loads(text)
+    nested(draw, values)
+    path.write_text(tomli_w.dumps(values) if toml else json.dumps(values))
     reseal(newest(run))
 
 
@@ -160,38 +148,25 @@ def manifest_changed(draw: random.Random, run: Path) -> None:
     reseal(newest(run), lambda content: nested(draw, content))
 
 
-def settings_changed(draw: random.Random, run: Path) -> None:
-    path = run / "config.toml"
-    values = tomllib.loads(path.read_text())
-    nested(draw, values)
-    try:
-        path.write_text(tomli_w.dumps(values))
-    except (TypeError, ValueError):  # no TOML can hold it
-        return
-    reseal(newest(run))
-
-
 def arrays_changed(draw: random.Random, run: Path) -> None:
-    folder = draw.choice([newest(run), *run.glob("origin")])
-    path = folder / "state.npz"
-    with np.load(path) as stored:
-        arrays = dict(stored)
-    name = draw.choice(sorted(arrays))
-    array = arrays.pop(name)
-    changes = [
-        lambda: array[:-1],
-        lambda: array[None],
-        lambda: array.astype(np.float64),
-        lambda: array.astype(np.int8),
-        lambda: np.zeros((0,), array.dtype),
-        lambda: np.array("text"),
-        lambda: np.full_like(array, np.iinfo(array.dtype).max if array.dtype.kind in "iu" else 1),
-        lambda: draw_bits(draw, array),
-    ]
-    if draw.random() < 0.85:
-        arrays[name if draw.random() < 0.9 else "other"] = draw.choice(changes)()
-    np.savez(path, allow_pickle=False, **arrays)
-    reseal(folder)
+    def change(arrays: Arrays) -> None:
+        name = draw.choice(sorted(arrays))
+        array = arrays.pop(name)
+        most = np.iinfo(array.dtype).max if array.dtype.kind in "iu" else 1
+        changed = draw.choice([
+            array[:-1],
+            array[None],
+            array.astype(np.float64),
+            array.astype(np.int8),
+            np.zeros((0,), array.dtype),
+            np.array("text"),
+            np.full_like(array, most),
+            draw_bits(draw, array),
+        ])  # fmt: skip
+        if draw.random() < 0.85:
+            arrays[name if draw.random() < 0.9 else "other"] = changed
+
+    rewrite(draw.choice([newest(run), *run.glob("origin")]), change)
 
 
 def draw_bits(draw: random.Random, array: np.ndarray) -> np.ndarray:
@@ -229,9 +204,8 @@ CHANGES: list[Change] = [
     bytes_changed,
     replaced,
     renamed,
-    json_changed,
+    values_changed,
     manifest_changed,
-    settings_changed,
     arrays_changed,
     table_changed,
 ]
@@ -270,7 +244,7 @@ def tried(made: Path, folder: Path, seed: int) -> int:
     return done.returncode
 
 
-@pytest.mark.parametrize("seed", range(8, 16))
+@pytest.mark.parametrize("seed", range(len(CHANGES)))
 def test_a_forged_run_is_read_or_refused(made: Path, tmp_path: Path, seed: int) -> None:
     tried(made, tmp_path, seed)
 
@@ -283,18 +257,3 @@ def test_two_thousand_forged_runs_are_read_or_refused(made: Path, tmp_path: Path
         statuses.add(tried(made, tmp_path / str(seed), seed))
         shutil.rmtree(tmp_path / str(seed))
     assert statuses == {0, 1, 2}
-
-
-def test_a_cycle_among_parents_is_no_endless_loop(made: Path, tmp_path: Path) -> None:
-    run = Path(shutil.copytree(made / "run", tmp_path / "run"))
-    (path,) = run.glob("births/*.parquet")
-    table = pq.read_table(path)
-    parents = table["parent"].to_pylist()
-    at = next(row for row, parent in enumerate(parents) if parent is not None)
-    parents[at] = table["id"][at].as_py()
-    pq.write_table(table.set_column(2, "parent", pa.array(parents, pa.int64())), path)
-    reseal(newest(run))
-    with watched():
-        done = here("export", run, tmp_path / "genome")
-    assert done.returncode == 1
-    assert "is not younger than its parent" in done.stderr

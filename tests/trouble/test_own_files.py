@@ -20,25 +20,26 @@ def test_no_file_of_the_user_is_removed_for_a_run(tmp_path: Path) -> None:
         (mine / name).parent.mkdir(parents=True, exist_ok=True)
         (mine / name).write_text("mine")
     before = contents(mine)
-    done = here("run", *SMALL, "--ticks", 9, "--resume", "--out", mine)
-    complains(done, 2, f"{mine} exists already and is not a run")
+    for words in ((), ("--resume",)):
+        done = here("run", *SMALL, "--ticks", 9, *words, "--out", mine)
+        complains(done, 2, f"{mine} exists already and is not a run", "--out")
+        assert "primordia resume" not in done.stderr, "that would be no help"
     assert contents(mine) == before
 
 
-def test_an_experiment_writes_into_no_folder_behind_a_link(tmp_path: Path) -> None:
+@pytest.mark.parametrize("arm", [False, True])
+def test_an_experiment_writes_into_no_folder_behind_a_link(tmp_path: Path, arm: bool) -> None:
+    """The link is in place of a run, or of the folder of its arm."""
     mine = tmp_path / "mine"
     (mine / "code").mkdir(parents=True)
     (mine / "code" / "a.py").write_text("mine")
-    file = write(tmp_path / "experiment")
-    chosen = begin(file, tmp_path / "out")
-    link = chosen.path / chosen.jobs[0].folder
-    link.parent.mkdir()
+    chosen = begin(write(tmp_path / "experiment"), tmp_path / "out")
+    run = chosen.path / chosen.jobs[0].folder
+    link = run.parent if arm else run
+    link.parent.mkdir(exist_ok=True)
     link.symlink_to(mine)
-    ending = job.ending_of(chosen.plan, chosen.jobs[0], chosen.path)
-    assert (
-        ending.error
-        == f"{link} is a symbolic link, not a folder; a run writes only into its own folders"
-    )
+    error = f"{link} is a symbolic link, not a folder; a run writes only into its own folders"
+    assert job.ending_of(chosen.plan, chosen.jobs[0], chosen.path).error == error
     assert [path.name for path in mine.rglob("*")] == ["code", "a.py"]
 
 

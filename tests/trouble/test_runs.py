@@ -37,13 +37,12 @@ def test_a_directory_that_is_taken_is_refused(run: Path, tmp_path: Path) -> None
 
 @pytest.mark.parametrize("command", ["info", "resume", "verify"])
 def test_a_directory_that_is_no_run_is_an_error(command: str, tmp_path: Path) -> None:
-    (tmp_path / "mine.txt").write_text("mine")
-    before = contents(tmp_path)
+    file = tmp_path / "mine.txt"
+    file.write_text("mine")
     for path in (tmp_path, tmp_path / "nothing"):
         complains(here(command, path), 2, str(path), "is not a run of primordia")
-    file = tmp_path / "mine.txt"
     complains(here(command, file), 2, str(file), "is neither a run of primordia nor a bundle")
-    assert contents(tmp_path) == before
+    assert contents(tmp_path) == {str(file): b"mine"}
 
 
 @pytest.mark.parametrize("file", ["config.toml", "versions.json"])
@@ -65,15 +64,15 @@ def test_a_half_made_directory_is_no_run(
         complains(here(command, tmp_path / "run"), 2, "is not a run of primordia")
 
 
-@pytest.mark.parametrize("command", ["info", "resume", "verify"])
-def test_a_run_of_a_newer_version_is_an_error(command: str, run: Path) -> None:
+def test_a_run_of_a_newer_version_is_an_error(run: Path) -> None:
     change_versions(run, format=directory.FORMAT + 1)
     before = contents(run)
-    complains(here(command, run), 2, str(run), "newer primordia", "upgrade")
+    for command in ("info", "resume", "verify"):
+        complains(here(command, run), 2, str(run), "newer primordia", "upgrade")
     assert contents(run) == before
 
 
-@pytest.mark.parametrize("text", ["", "{", "[1]", "5", '{"jax": "1"}', '{"format": "x"}', "\udcff"])
+@pytest.mark.parametrize("text", ["", "[1]", '{"jax": "1"}', '{"format": "x"}', "\udcff"])
 def test_garbled_versions_are_an_error(run: Path, text: str) -> None:
     (run / "versions.json").write_bytes(text.encode(errors="surrogateescape"))
     before = contents(run)
@@ -94,16 +93,12 @@ def change_versions(run: Path, **change: object) -> None:
     path.write_text(json.dumps(json.loads(path.read_text()) | change))
 
 
-@pytest.mark.parametrize(
-    "change", [{"jax": "0.0.1"}, {"instruction_set": "x86_64 SSE4_2"}, {"device": "NVIDIA H200"}]
-)
-def test_a_run_of_other_versions_is_resumed_on_request_only(
-    run: Path, through: str, change: dict[str, str]
-) -> None:
-    ((name, value),) = change.items()
-    change_versions(run, **change)
+def test_a_run_of_other_versions_is_resumed_on_request_only(run: Path, through: str) -> None:
+    then = {"jax": "0.0.1", "instruction_set": "x86_64 SSE4_2", "device": "NVIDIA H200"}
+    change_versions(run, **then)
     before, on = contents(run), ("--device", "cpu")
-    complains(here("resume", run, *on), 2, str(run), f"{name} {value} then", "now", "--inexact")
+    named = [f"{name} {value} then" for name, value in then.items()]
+    complains(here("resume", run, *on), 2, str(run), *named, "now", "--inexact")
     assert contents(run) == before
     done = here("verify", run, *on)
     assert (done.returncode, done.stderr) == (0, ""), "the result was the same in spite of that"

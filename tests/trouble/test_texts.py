@@ -82,40 +82,28 @@ WORDS = (
     ("run", TASK, "--ancestor", "{}"),
     ("evaluate", "{}"),
     ("{}",),
+    ("export", "RUN", "NEW"),
+    ("phylogeny", "RUN", "--out", "NEW.nwk"),
+    ("bundle", "RUN", "NEW"),
+    ("relive", "RUN", "0", "--save", "NEW.npz"),
+    ("replay", "RUN", "--from", "0", "--to", "5", "--out", "NEW.gif"),
+    ("run", *SMALL, "--ticks", "5", "--out", "NEW"),
 )
-"""Commands with a word of any characters."""
+"""Commands with a word of any characters, or that write a file or folder with them in its name."""
 
 
-@settings(max_examples=60)
+@settings(max_examples=80)
 @given(ODD_WORDS, st.sampled_from(WORDS))
 @example("\udcff", ("run", "{}"))
+@example("\x1b\udcff", WORDS[-1])
 def test_odd_words_are_answered_with_one_line(
-    place: Path, text: str, words: tuple[str, ...]
-) -> None:
-    with chdir(place):
-        answers(here(*(word.replace("{}", text) for word in words)))
-
-
-FILES = (
-    ("export", "RUN", "{}"),
-    ("phylogeny", "RUN", "--out", "{}.nwk"),
-    ("bundle", "RUN", "{}"),
-    ("relive", "RUN", "0", "--save", "{}.npz"),
-    ("replay", "RUN", "--from", "0", "--to", "5", "--out", "{}.gif"),
-    ("run", *SMALL, "--ticks", "5", "--out", "{}"),
-)
-"""Commands that write a file or folder."""
-
-
-@settings(max_examples=20)
-@given(ODD_WORDS.map(lambda text: text.replace("/", "")), st.sampled_from(FILES))
-@example("\x1b\udcff", ("run", *SMALL, "--ticks", "5", "--out", "{}"))
-def test_odd_names_are_written_or_refused_with_one_line(
     place: Path, half: Path, text: str, words: tuple[str, ...]
 ) -> None:
-    file = place / f"{next(FRESH)}{text}"
-    replaced = (word.replace("{}", str(file)).replace("RUN", str(half)) for word in words)
-    answers(here(*replaced))
+    new = place / f"{next(FRESH)}{text.replace('/', '')}"
+    for old, odd in (("{}", text), ("RUN", str(half)), ("NEW", str(new))):
+        words = tuple(word.replace(old, odd) for word in words)
+    with chdir(place):
+        answers(here(*words))
 
 
 FRESH = count()

@@ -189,38 +189,29 @@ def compare(
         lives = [each.recorded_until(end) for each in lives]
     if island is not None:
         lives = [_natives(run, begin, end, island) for run in runs]
-    names, settings, rate = _names(runs), differing(configs), runs[0].description.rate
     arms = tuple(
-        _arm(
-            (names[number], settings[number]),
-            run,
-            lives[number],
-            saturated[number],
-            (age, begin, end),
-        )
-        for number, run in enumerate(runs)
+        _arm(*each, age, begin, end)
+        for each in zip(_names(runs), differing(configs), runs, lives, saturated, strict=True)
     )
-    span = "second" if rate else "tick"
+    span = "second" if runs[0].description.rate else "tick"
     return Comparison(configs[0].task, arms, age, begin, births, ticks, span, island)
 
 
 def _arm(
-    named: tuple[str, dict[str, Any]],
+    name: str,
+    settings: dict[str, Any],
     run: Records,
     lived: Lives,
     saturated: dict[str, Measured],
-    limits: tuple[int, int, int],
+    age: int,
+    begin: int,
+    end: int,
 ) -> ComparedArm:
-    """Return the measurements of a run.
+    """Return the measurements of a run, of which `settings` differ from those of other runs.
 
-    Args:
-        named: name of the run, and the settings in which it differs.
-        run: the run.
-        lived: the lives that count.
-        saturated: births and ticks to saturation.
-        limits: the age up to which lives count, and the first and last tick of the common time.
+    The lives that count, `lived`, do so up to an age. The common time is from tick `begin` to `end`.
     """
-    (age, begin, end), worlds = limits, lived.by_world()
+    worlds = lived.by_world()
     survived, dying = survival(lived, len(worlds), age), pace(worlds, begin, end)
     gathered = gathering(run, len(worlds), begin, end, run.description.rate or 1)
     measured = {
@@ -232,7 +223,7 @@ def _arm(
         "food": gathered.late,
     }
     lost = extinctions(worlds, run.config.cells)
-    return ComparedArm(*named, run.world_seeds, measured, survived, dying, gathered, lost)
+    return ComparedArm(name, settings, run.world_seeds, measured, survived, dying, gathered, lost)
 
 
 def _natives(run: Records, begin: int, end: int, island: str) -> Lives:

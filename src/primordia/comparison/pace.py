@@ -64,14 +64,11 @@ def gathering(run: Records, worlds: int, begin: int, end: int, span: float) -> G
     world gathered any food.
     """
     if not run.count("world.worlds.food").any():
-        return Gathering(np.full((worlds, WINDOWS), np.nan), _known(np.zeros(worlds), False))
+        unknown = Measured(np.zeros(worlds), np.zeros(worlds, bool))
+        return Gathering(np.full((worlds, WINDOWS), np.nan), unknown)
     edges = np.linspace(begin, end, WINDOWS + 1)
     totals = harvests(run, worlds)
     curve = span * np.array([harvest.between(edges) for harvest in totals])
     late = span * np.array([harvest.between(edges[[-1 - LATE, -1]])[0] for harvest in totals])
     any_food = bool(np.nan_to_num(curve).any())
-    return Gathering(curve, _known(np.nan_to_num(late), any_food))
-
-
-def _known(late: np.ndarray, known: bool) -> Measured:
-    return Measured(late, np.full(len(late), known))
+    return Gathering(curve, Measured(np.nan_to_num(late), np.full(worlds, any_food)))

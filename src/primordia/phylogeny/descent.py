@@ -16,10 +16,10 @@ from primordia.history.rebuilding import bodies, changes, descent
 from primordia.history.series import plain
 from primordia.law.world import BirthCause, Cause
 from primordia.phylogeny.coalescence import Genealogy
-from primordia.phylogeny.fixation import UNKNOWN, branches, first_ticks
+from primordia.phylogeny.fixation import UNKNOWN, first_ticks
 from primordia.phylogeny.forks import Say, whole_past
 from primordia.phylogeny.frequencies import instants
-from primordia.phylogeny.living import Census, Turnover
+from primordia.phylogeny.living import Census, Turnover, branches
 from primordia.runs.archive import Archive, run_of
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records

@@ -6,9 +6,10 @@ the piece or descends from it. So the sum of branches needs no tree: a piece is 
 complete, and removed when its last descendant dies.
 """
 
+from array import array
+
 import numpy as np
 
-from primordia.history.ancestry import ROWS
 from primordia.phylogeny.living import stops
 from primordia.runs.lives import Lives
 
@@ -63,55 +64,25 @@ def hill_numbers(counts: np.ndarray) -> np.ndarray:
 def _pieces(lives: Lives) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return when the pieces of lives begin and end, and when the last descendant of each piece dies.
 
-    Each result is int64. The last piece of a life ends with the life.
+    Each result is int64. The first pieces of all lives come first. Then comes the piece of each
+    parent that begins with the birth of a child, and ends with the birth of the next one.
     """
-    stop = np.minimum(stops(lives), lives.ended.max() + 1)  # small numbers
-    parent = lives.parent_row
-    gone = _last_descendant(parent, stop)
-    child = np.flatnonzero(parent >= 0)
-    order = np.argsort(parent[child], kind="stable")  # by parent, and the older child first
-    child = child[order]
-    of, later = parent[child], _next_of_group(parent[child])
-    # Each child's birth begins a piece of its parent, which the next child's birth ends.
-    following = np.where(later, lives.born[np.append(child[1:], 0)], stop[of])
-    first = np.flatnonzero(np.diff(of, prepend=-1))
-    until = stop.copy()  # the end of the first piece of each life
-    until[of[first]] = lives.born[child[first]]
-    rest = _latest_after(of, gone[child], stop[of])
+    parents, born = (array("q", each.tobytes()) for each in (lives.parent_row, lives.born))
+    # So far, an organism has only the children that are younger than the one that is looked at.
+    until = array("q", np.minimum(stops(lives), lives.ended.max() + 1).tobytes())  # small numbers
+    gone = until[:]
+    following, rest = until[:], until[:]
+    for row in range(len(parents) - 1, -1, -1):
+        if (parent := parents[row]) >= 0:
+            following[row], rest[row] = until[parent], gone[parent]
+            until[parent] = born[row]
+            if gone[row] > gone[parent]:
+                gone[parent] = gone[row]
+    child = np.flatnonzero(lives.parent_row >= 0)
     begin = np.concatenate([lives.born, lives.born[child]])
-    return begin, np.concatenate([until, following]), np.concatenate([gone, rest])
-
-
-def _next_of_group(groups: np.ndarray) -> np.ndarray:
-    """Return, for each element, whether the next element has the same group, bool."""
-    return np.append(groups[1:] == groups[:-1], False)
-
-
-def _latest_after(of: np.ndarray, gone: np.ndarray, stop: np.ndarray) -> np.ndarray:
-    """Return, for each child, when its parent and the lines of all later children have ended, int64.
-
-    Args:
-        of: parent of each child, rising; its children in the order of birth.
-        gone: when the last of each child's line dies.
-        stop: when each child's parent dies.
-    """
-    apart = int(max(gone.max(initial=0), stop.max(initial=0))) + 1
-    lift = (of.max(initial=0) - of)[::-1] * apart  # one parent's values are above those of the next
-    latest = (np.maximum.accumulate(gone[::-1] + lift) - lift)[::-1]
-    return np.maximum(stop, np.where(_next_of_group(of), np.append(latest[1:], 0), 0))
-
-
-def _last_descendant(parent_row: np.ndarray, stop: np.ndarray) -> np.ndarray:
-    """Return the tick from which each organism and all its descendants are dead, int64 (L,)."""
-    gone = stop.copy()
-    for first in range((len(stop) - 1) // ROWS * ROWS, -1, -ROWS):
-        own, parent = gone[first : first + ROWS], parent_row[first : first + ROWS]
-        child, jump = np.flatnonzero(parent >= first), parent - first
-        while len(child):  # the way up is doubled in each step
-            np.maximum.at(own, jump[child], own[child])
-            further = jump[jump[child]]
-            jump[child] = further
-            child = child[further >= 0]
-        older = np.flatnonzero((parent >= 0) & (parent < first))
-        np.maximum.at(gone, parent[older], own[older])
-    return gone
+    of_lives, of_parents = ((until, gone), (following, rest))
+    end, last = (
+        np.concatenate([np.frombuffer(first, np.int64), np.frombuffer(later, np.int64)[child]])
+        for first, later in zip(of_lives, of_parents, strict=True)
+    )
+    return begin, end, last

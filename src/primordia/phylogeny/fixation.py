@@ -4,25 +4,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from primordia.history.ancestry import nearest, places_of
 from primordia.phylogeny.living import NEVER, Turnover
 
 SPANS = 256, 2048
 """Smallest and largest number of births and deaths in one step."""
 UNKNOWN = -1
 """Number in place of a tick that has not come."""
-
-
-def branches(parent_row: np.ndarray, line: np.ndarray) -> np.ndarray:
-    """Return the place on a line of descent at which each organism's own line leaves it, int64 (L,).
-
-    This is the place of the youngest common ancestor of both lines, or -1 if there is none.
-
-    Args:
-        parent_row: row of each parent, or -1, int64 (L,).
-        line: rows of a line of descent, oldest first, int64 (D,).
-    """
-    return places_of(line, nearest(parent_row, line))
 
 
 def first_ticks(

@@ -3,7 +3,6 @@
 import numpy as np
 
 from primordia.errors import InputError
-from primordia.history.ancestry import nearest, places_of
 from primordia.phylogeny.clades import crowd_size
 from primordia.phylogeny.living import Census, Turnover, last_era
 from primordia.runs.lives import Lives
@@ -45,12 +44,3 @@ def founders(lives: Lives, at: int) -> np.ndarray:
     if not len(rows):
         raise InputError(f"--at: nothing is alive after tick {at:,}, so no line begins there")
     return rows
-
-
-def lines_of(lives: Lives, founders: np.ndarray) -> np.ndarray:
-    """Return the line of each organism as the place of its founder in `founders`, or -1; int64 (L,).
-
-    A line is a founder with all its descendants; the founders, int64 (K,), were alive at one tick. A
-    child belongs to its parent's line, and to the line of the first parent if it has two.
-    """
-    return places_of(founders, nearest(lives.parent_row, founders))

@@ -13,8 +13,8 @@ from primordia.phylogeny import coalescence, slopes
 from primordia.phylogeny.coalescence import Genealogy, Times
 from primordia.phylogeny.diversity import hill_numbers, phylogenetic_diversity
 from primordia.phylogeny.drift import Drift, drift
-from primordia.phylogeny.frequencies import founders, founding_tick, instants, lines_of
-from primordia.phylogeny.living import Census, Turnover, last_era
+from primordia.phylogeny.frequencies import founders, founding_tick, instants
+from primordia.phylogeny.living import Census, Turnover, branches, last_era
 from primordia.phylogeny.sweeps import Sweep, sweeps
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
@@ -171,7 +171,7 @@ def lines_of_world(
     founded = founding_tick(lives) if at is None else at
     own = founders(lives, founded)
     census = Census(lives, instants(founded, int(lives.ended.max())))
-    line = lines_of(lives, own)
+    line = branches(lives.parent_row, own)
     counts = census.counts(line, len(own))
     measured = slopes.observed(counts, census.living, census.ticks)
     with_slope = np.flatnonzero(np.isfinite(measured))

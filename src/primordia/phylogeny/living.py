@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
+from primordia.history.ancestry import nearest, places_of
 from primordia.runs.lives import Lives
 
 NEVER = np.iinfo(np.int64).max
@@ -26,6 +27,20 @@ def last_era(lives: Lives) -> Lives:
         return lives
     first = np.searchsorted(lives.born[rootless], lives.born[rootless[-1]])
     return lives.take(slice(int(rootless[first]), None))
+
+
+def branches(parent_row: np.ndarray, chosen: np.ndarray) -> np.ndarray:
+    """Return the place of the nearest of some organisms on each organism's line of descent, int64 (L,).
+
+    It is -1 if there is none. If the organisms are a line of descent, the place is where each
+    organism's own line leaves it. If they began lines at one tick, it is each organism's line: a child
+    belongs to its parent's line, and to the line of the first parent if it has two.
+
+    Args:
+        parent_row: row of each parent, or -1, int64 (L,).
+        chosen: rows of the organisms, in ascending order, int64 (D,).
+    """
+    return places_of(chosen, nearest(parent_row, chosen))
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ import numpy as np
 from primordia.history.rebuilding import descent
 from primordia.law.world import BirthCause
 from primordia.phylogeny.coalescence import Genealogy
-from primordia.phylogeny.fixation import UNKNOWN, branches, first_ticks
-from primordia.phylogeny.living import Turnover, last_era
+from primordia.phylogeny.fixation import UNKNOWN, first_ticks
+from primordia.phylogeny.living import Turnover, branches, last_era
 from primordia.runs.lives import Lives
 
 
