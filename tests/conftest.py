@@ -2,6 +2,7 @@
 
 import gc
 import os
+from collections import defaultdict
 from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
@@ -21,20 +22,16 @@ from tests import commands
 device.prepare()
 
 
-LONGEST = ["runs", "habitats", "engine", "trouble", "organism", "experiments", "report", "law",
-           "assays", "phylogeny"]  # fmt: skip
-"""Folders that take longest; they come first, so none is left to one process at the end."""
-
-
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Begin with the folders that take longest."""
-    here = Path(__file__).parent
-    places = {name: place for place, name in enumerate(LONGEST)}
+    """Take the first file of each folder, then the second of each, and so on.
 
-    def place(item: pytest.Item) -> int:
-        return places.get(item.path.relative_to(here).parts[0], len(places))
-
-    items.sort(key=place)
+    So processes that run side by side compile different worlds, and not the same one twice.
+    """
+    folders = defaultdict[Path, list[Path]](list)
+    for file in dict.fromkeys(item.path for item in items):
+        folders[file.parent].append(file)
+    turns = {file: turn for files in folders.values() for turn, file in enumerate(files)}
+    items.sort(key=lambda item: turns[item.path])
 
 
 def pytest_collection_finish() -> None:
