@@ -55,11 +55,11 @@ class Ring:
         return self.cells, 1
 
     def scale(self, room: Room) -> int:
-        """Return the width of a cell, in columns; see above."""
+        """Return the width of a cell, in columns; 0 if there is no room for all cells."""
         return min(room.width // self.cells, WIDEST) if room.height else 0
 
     def draw(self, cells: Cells, past: Sequence[np.ndarray], room: Room) -> tuple[list[Row], str]:
-        """Draw the cells in order; see above."""
+        """Return all cells in order as rows, and words on the part that is shown if not all are."""
         wide = max(self.scale(room), 1)
         most = max(room.height, 1)
         count = min(-(-self.cells * wide // (room.width // wide * wide)), most)
@@ -100,11 +100,11 @@ class Torus:
         return self.columns, -(-self.rows // 2)
 
     def scale(self, room: Room) -> int:
-        """Return the width of a cell, in columns; see above."""
+        """Return the width of a cell, in columns; 0 if there is no room for all cells."""
         return self._scale(self._beside(room)) or self._scale(room)
 
     def draw(self, cells: Cells, past: Sequence[np.ndarray], room: Room) -> tuple[list[Row], str]:
-        """Draw the cells in their places; see above."""
+        """Return all cells in their places as rows, and words on the part that is shown."""
         drawn, part = self._drawn(cells, room)
         if self.islands is None or not self._scale(self._beside(room)):
             return drawn, part
