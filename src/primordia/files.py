@@ -52,15 +52,17 @@ def writing(path: Path) -> Iterator[None]:
         raise Trouble(f"{path} cannot be written: {error.strerror or error}") from None
 
 
-def write(path: Path, fill: Callable[[Path], object]) -> None:
+def write(path: Path, fill: Callable[[Path], object], own: str = "") -> None:
     """Write the file `path`: `fill` writes a temporary file, which is then renamed.
+
+    If several processes may write the file at once, each has its `own` name for the temporary file.
 
     Raises:
         InputError: the path exists and is not a regular file.
         Trouble: the file cannot be written (disk full, no permission, ...).
     """
     check_output(path)
-    temporary = path.with_name(TEMPORARY + path.name)
+    temporary = path.with_name(TEMPORARY + own + path.name)
 
     def undo() -> None:
         with suppress(OSError):

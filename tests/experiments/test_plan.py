@@ -6,6 +6,7 @@ from typing import Any
 
 import pytest
 
+from primordia import files
 from primordia.errors import InputError
 from primordia.experiments import plan as plans
 from primordia.experiments.campaign import begin, planned
@@ -79,6 +80,25 @@ def test_a_plan_is_read_as_it_was_written(tmp_path: Path) -> None:
     plan = begin(write(tmp_path), tmp_path / "out").plan
     assert plans.recorded(tmp_path / "out") == plan
     assert begin(tmp_path / "out").plan == plan
+
+
+def test_processes_may_begin_an_experiment_at_the_same_moment(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """While one has written its plan under a temporary name, another begins and ends."""
+    out, plan, sync = tmp_path / "out", read(write(tmp_path), tmp_path / "out"), files.sync
+
+    def meanwhile(path: Path) -> None:
+        if path.name.startswith(files.TEMPORARY):
+            monkeypatch.setattr(files, "sync", sync)
+            monkeypatch.setattr("os.getpid", lambda: 7)
+            begin(write(tmp_path), out)
+        sync(path)
+
+    monkeypatch.setattr(files, "sync", meanwhile)
+    plans.write(plan, out)
+    assert plans.recorded(out) == plan
+    assert [each.name for each in out.iterdir()] == ["experiment.toml"]
 
 
 def test_words_of_a_question_may_change_and_settings_may_not(tmp_path: Path) -> None:

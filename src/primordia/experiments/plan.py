@@ -6,6 +6,7 @@ OUT/experiment.toml      the plan, written once
 """
 
 import os
+import socket
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -167,8 +168,13 @@ def check(plan: Plan, out: Path) -> None:
     files.check_name(out)
     if (out / EXPERIMENT).is_file():
         _refuse_other(plan, recorded(out), out)
-    elif out.exists() and not (out.is_dir() and not os.listdir(out)):
+    elif out.exists() and not (out.is_dir() and _is_empty(out)):
         raise InputError(f"{out} exists already and is not an experiment; choose another --out")
+
+
+def _is_empty(out: Path) -> bool:
+    """Return whether a folder is empty, but for a plan that another process writes at this moment."""
+    return all(name.startswith((files.TEMPORARY, EXPERIMENT)) for name in os.listdir(out))
 
 
 def write(plan: Plan, out: Path) -> None:
@@ -182,8 +188,9 @@ def write(plan: Plan, out: Path) -> None:
         if not (further := plan.arms[len(there.arms) :]):
             return
         plan = there.model_copy(update={"arms": (*there.arms, *further)})
-    values = plan.model_dump(mode="json", exclude_none=True)
-    files.write_text(out / EXPERIMENT, tomli_w.dumps(values))
+    text = tomli_w.dumps(plan.model_dump(mode="json", exclude_none=True))
+    own = f"{socket.gethostname()}-{os.getpid()}-"  # all jobs of an array may begin at once
+    files.write(out / EXPERIMENT, lambda temporary: temporary.write_text(text, "utf-8"), own=own)
 
 
 def _refuse_other(plan: Plan, there: Plan, out: Path) -> None:
