@@ -190,7 +190,7 @@ def write(plan: Plan, out: Path) -> None:
         plan = there.model_copy(update={"arms": (*there.arms, *further)})
     text = tomli_w.dumps(plan.model_dump(mode="json", exclude_none=True))
     own = f"{socket.gethostname()}-{os.getpid()}-"  # all jobs of an array may begin at once
-    files.write(out / EXPERIMENT, lambda temporary: temporary.write_text(text, "utf-8"), own=own)
+    files.write(out / EXPERIMENT, lambda temporary: temporary.write_bytes(text.encode()), own=own)
 
 
 def _refuse_other(plan: Plan, there: Plan, out: Path) -> None:
