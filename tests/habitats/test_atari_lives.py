@@ -1,7 +1,5 @@
 """Lives in Atari games: exact in all runs, lived again bit for bit, and shown on video."""
 
-import gc
-from collections import defaultdict
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -11,23 +9,21 @@ import numpy as np
 import pytest
 
 import primordia
-from primordia.habitats.atari import simulator
 from primordia.habitats.atari.games import facts
 from primordia.habitats.atari.habitat import SCALED, Atari
+from primordia.habitats.atari.simulator import NOOP, console
 from primordia.habitats.framed import MARGIN
 from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
 from primordia.organism.reliving.relived import ALONE, RelivedLife
 from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
-from primordia.runs.verify import verify
 from tests.commands import here
 from tests.organism.test_life import at_the_end
 
 pytest.importorskip("ale_py")
 
 TASK, SENSES = "Breakout-survival-forager", (72, 99, 101)
-STOP = {"ticks": 250, "until": "none"}
 SETTINGS: dict[str, Any] = {
     "cells": 6,
     "habitat": {
@@ -47,73 +43,16 @@ SETTINGS: dict[str, Any] = {
 
 @pytest.fixture(scope="module")
 def breakout(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Make a run with lives of all kinds."""
+    """Make a run with lives of all kinds, which was stopped at a tick of 90."""
     run = tmp_path_factory.mktemp("breakout") / "run"
-    return primordia.run(TASK, run, SETTINGS, stop=STOP).path
-
-
-def test_the_emulators_version_is_recorded(breakout: Path) -> None:
-    assert primordia.load(breakout).info()["versions"]["ale-py"] == version("ale-py")
-
-
-def of_worlds(run: primordia.Run, what: str = "digest") -> list[Any]:
-    """Return the digest, or the number of something, of each world."""
-    return [world[what] for world in run.info()["worlds"]]
+    made = primordia.run(TASK, run, SETTINGS, stop={"ticks": 90, "until": "none"})
+    made.resume(ticks=250)
+    return made.path
 
 
 def after(run: primordia.Run, tick: int) -> list[dict[str, Any]]:
     """Return the deaths later than a tick."""
     return [row for row in run.table("deaths").to_pylist() if row["tick"] > tick]
-
-
-def test_runs_are_exact(breakout: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Runs are equal with workers or none, after a resume, in a fork and lived again.
-
-    A checkpoint that was written with workers is resumed without.
-    """
-    whole, habitat = primordia.load(breakout), {**SETTINGS["habitat"], "workers": None}
-    monkeypatch.setenv("PRIMORDIA_CORES", "2")
-    parts = primordia.run(
-        TASK, tmp_path / "run", SETTINGS, habitat=habitat, stop={**STOP, "ticks": 90}
-    )
-    assert of_worlds(parts) != of_worlds(whole)
-    monkeypatch.setenv("PRIMORDIA_CORES", "1")
-    parts.resume(ticks=250)
-    assert of_worlds(parts) == of_worlds(whole)
-    for name in ("births", "deaths", "metrics"):
-        assert parts.table(name) == whole.table(name)
-    assert verify(Archive(parts.path)) == []
-    fork = whole.fork(140, tmp_path / "fork")
-    assert of_worlds(fork, "births") == of_worlds(whole, "births")
-    assert after(fork, 140) == after(whole, 140)
-
-
-@pytest.mark.slow
-def test_emulators_that_are_free_are_used_again(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A run in them is the same to the last byte of its checkpoints, and makes no new ones."""
-    monkeypatch.setattr(simulator, "_SPARE", defaultdict(list))
-    simulator._start.cache_clear()
-    made, console = list[str](), simulator.console
-
-    def counted(game: str, *settings: Any) -> Any:
-        made.append(game)
-        return console(game, *settings)
-
-    monkeypatch.setattr(simulator, "console", counted)
-    found = []
-    for name in ("first", "second"):
-        run = primordia.run(TASK, tmp_path / name, SETTINGS, stop={**STOP, "ticks": 60})
-        found.append(of_worlds(run))
-        del run
-        gc.collect()
-    assert made == ["breakout"] * 6
-    assert found[0] == found[1]
-    first, second = (Archive(tmp_path / name).state for name in ("first", "second"))
-    for name, array in first.items():
-        np.testing.assert_array_equal(array, second[name], name)
-    simulator._start.cache_clear()
 
 
 def some(lives: Lives, which: np.ndarray, count: int) -> list[tuple[int, int]]:
@@ -145,34 +84,26 @@ def assert_ends_as_recorded(run: Archive, organism: int, world: int) -> None:
         assert scores[-1][-1] == death["score"]
 
 
-@pytest.mark.parametrize("cause", [Cause.FATAL, Cause.STARVED, Cause.HAZARD, None])
-def test_a_life_lived_again_ends_as_recorded(breakout: Path, cause: Cause | None) -> None:
-    run = Archive(breakout)
-    lives = run.lives
-    which = ~lives.died if cause is None else lives.cause == cause
-    for organism, world in some(lives, which, 2):
-        assert_ends_as_recorded(run, organism, world)
-
-
-def test_a_life_is_lived_again_through_a_fork(breakout: Path, tmp_path: Path) -> None:
+def test_lives_lived_again_end_as_recorded_also_through_a_stop_and_a_fork(
+    breakout: Path, tmp_path: Path
+) -> None:
     """The fork has another seed; the emulator, its random state and the score continue unchanged."""
     whole = primordia.load(breakout)
-    other = whole.fork(200, tmp_path / "fork", seed=8)
+    assert whole.info()["versions"]["ale-py"] == version("ale-py")
+    other = whole.fork(200, tmp_path / "fork", seed=8, stop={"ticks": 250})
     assert after(other, 200) != after(whole, 200)
-    fork = Archive(other.path)
-    lives = fork.lives
-    older = lives.born <= 200
-    for organism, world in [*some(lives, older, 3), *some(lives, ~older, 1)]:
-        assert_ends_as_recorded(fork, organism, world)
+    lives, later = whole.lives(), other.lives()
+    causes = [lives.cause == cause for cause in (Cause.FATAL, Cause.STARVED, Cause.HAZARD)]
+    through = (lives.born <= 90) & (lives.ended > 90)
+    for which in (through, ~lives.died, *causes):
+        for organism, world in some(lives, which, 2):
+            assert_ends_as_recorded(Archive(breakout), organism, world)
+    for which in (later.born <= 200, later.born > 200):
+        for organism, world in some(later, which, 2):
+            assert_ends_as_recorded(Archive(other.path), organism, world)
 
 
-def test_a_policy_acts_as_its_organism_did(breakout: Path) -> None:
-    organism = primordia.load(breakout).oldest()
-    policy = organism.policy()
-    (seen,) = RelivedLife.of(organism.run, organism.id, organism.world).stretches()
-    assert [policy(senses) for senses in seen.senses] == seen.action.tolist()
-
-
+@pytest.mark.slow
 def test_a_video_shows_a_life(breakout: Path, tmp_path: Path) -> None:
     lives = Archive(breakout).lives
     ((organism, world),) = some(lives, lives.cause == Cause.FATAL, 1)
@@ -203,14 +134,18 @@ def test_a_picture_has_pixels_twice_as_wide_as_high_below_its_caption() -> None:
 
 
 def test_some_games_have_larger_screens() -> None:
-    """Time runs as on the console, for any number of frames per tick."""
+    """Time runs as on the console, for any number of frames per tick. Each tick has its picture."""
     habitat = Atari(game="pacman", frame_skip=4, workers=0)
-    habitat.open(2, watched=True)
-    habitat.reset(np.array([0, 1]), np.zeros((2, habitat.words), np.uint32))
-    screens = habitat.seen()["screen"]
+    habitat.open(1, watched=True)
+    habitat.reset(np.array([0]), np.zeros((1, habitat.words), np.uint32))
+    habitat.step(np.zeros(1, np.int32), np.ones(1, bool))
+    screens, alone = habitat.seen()["screen"], console("pacman")
+    for _ in range(4):
+        alone.act(NOOP)
+    np.testing.assert_array_equal(screens, alone.getScreenRGB()[None])
     habitat.close()
-    assert screens.shape == (2, *facts("pacman").screen, 3) == (2, 250, 160, 3)
-    assert screens.reshape(2, -1).any(axis=1).all()
+    assert screens.shape == (1, *facts("pacman").screen, 3) == (1, 250, 160, 3)
+    assert screens.any()
     assert habitat.rate == 15
 
 

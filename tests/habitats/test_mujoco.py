@@ -12,7 +12,7 @@ from tests.robots import born, of_task, opened
 mujoco = pytest.importorskip("mujoco")
 gymnasium = pytest.importorskip("gymnasium")
 
-TICKS = 120
+TICKS = 60
 FOUR = np.ones(4, bool)
 
 
@@ -25,10 +25,10 @@ def started_alike(name: str, habitat: Any, body: int, **options: Any) -> Any:
     return env
 
 
-ALIKE: list[tuple[str, str, dict, dict, slice]] = [
+ALIKE: list[Any] = [
     ("HalfCheetah-forager", "HalfCheetah-v5", {}, {}, slice(0, 17)),
-    ("Walker-survival-forager", "Walker2d-v5", {"xml_file": "walker2d.xml"}, {"timestep": "none"},
-     slice(0, 17)),
+    pytest.param("Walker-survival-forager", "Walker2d-v5", {"xml_file": "walker2d.xml"},
+                 {"timestep": "none"}, slice(0, 17), marks=pytest.mark.slow),
     ("Hopper-survival", "Hopper-v5", {}, {}, slice(0, 11)),
     ("Humanoid-homeostasis", "Humanoid-v5", {}, {"timestep": "none"}, slice(0, 45)),
     ("Reacher-forager", "Reacher-v5", {}, {}, slice(0, 8)),
@@ -62,7 +62,7 @@ def test_senses_and_physics_are_gymnasiums_to_the_bit(
             if task.startswith(("Walker", "Humanoid")):
                 assert outcome.fatal[body] == terminated
         alive &= ~outcome.fatal
-    assert compared > (300 if task in ("HalfCheetah-forager", "Reacher-forager") else 40)
+    assert compared > (200 if task in ("HalfCheetah-forager", "Reacher-forager") else 40)
 
 
 @pytest.mark.parametrize(
@@ -113,23 +113,20 @@ def test_our_reacher_has_no_lag() -> None:
     np.testing.assert_array_equal(senses[0, 8:], apart.astype(np.float32))
 
 
-@pytest.mark.parametrize("cores", [2, 16])
-def test_a_body_is_a_function_of_its_words_alone(
-    monkeypatch: pytest.MonkeyPatch, cores: int
-) -> None:
+def test_a_body_is_a_function_of_its_words_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     """The body does not depend on the number of bodies, its cell, or the number of cores.
 
     Each core has a thread; with one core, that is the thread that calls.
     """
     monkeypatch.setenv("PRIMORDIA_CORES", "1")
     one = of_task("Reacher-forager", 1)
-    monkeypatch.setenv("PRIMORDIA_CORES", str(cores))
+    monkeypatch.setenv("PRIMORDIA_CORES", "2")
     many = of_task("Reacher-forager", 37)
-    assert (one._bodies.batch.nthread, many._bodies.batch.nthread) == (1, cores)
+    assert (one._bodies.batch.nthread, many._bodies.batch.nthread) == (1, 2)
     words = np.random.default_rng(3).integers(0, 2**32, (37, many.words), np.uint32)
     both = [many.reset(np.arange(37), words)[21], one.reset(np.array([0]), words[21:22])[0]]
     np.testing.assert_array_equal(*both)
-    for tick in range(60):
+    for tick in range(30):
         action = np.sin(np.arange(74).reshape(37, 2) + tick / 9).astype(np.float32)
         (senses, outcome), (sole, its) = (
             many.step(action, np.ones(37, bool)),

@@ -3,7 +3,6 @@
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -13,38 +12,10 @@ import primordia
 from primordia.habitats.mujoco import simulator as mujoco_model
 from tests import commands
 from tests.commands import complains, here
+from tests.habitats.test_mujoco_lives import BOX
 from tests.robots import MOTOR, SLIDE, born, opened
-from tests.worlds import HOSTED
 
 mujoco = pytest.importorskip("mujoco")
-
-BOX: dict[str, Any] = {
-    "task": "box",
-    **HOSTED,
-    "habitat": {
-        "name": "mujoco",
-        "file": "box.xml",
-        "food": "abs(forward)",
-        "fatal": "abs(qpos[0]) > 1",
-    },
-    "stop": {"ticks": 20},
-}
-
-
-def test_a_users_model_lives_and_is_not_resumed_with_another_model(tmp_path: Path) -> None:
-    """The model's file lies beside the TOML file that names it."""
-    model = tmp_path / "box.xml"
-    model.write_text(same := SLIDE.format(actuator=MOTOR))
-    (tmp_path / "box.toml").write_text(tomli_w.dumps(BOX))
-    box = primordia.run(str(tmp_path / "box.toml"), tmp_path / "run").path
-    info = primordia.load(box).info()
-    assert info["worlds"][0]["ticks"] == 20
-    assert info["versions"]["mujoco"] == mujoco.__version__
-    model.write_text(same.replace("0.1", "0.2"))
-    complains(here("resume", box, "--ticks", 30), 2, "box.xml has changed", "--inexact")
-    model.write_text(same)
-    assert here("resume", box, "--ticks", 30).returncode == 0
-    assert primordia.load(box).info()["worlds"][0]["ticks"] == 30
 
 
 @pytest.mark.slow

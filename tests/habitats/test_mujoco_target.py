@@ -90,12 +90,12 @@ def test_a_target_has_a_distance_and_a_radius(setting: str) -> None:
 
 
 def test_a_reached_target_feeds_once_and_then_moves() -> None:
-    habitat = of_task("Reacher-forager", 1000)
-    born(habitat, 1000)
-    all_alive, places = np.ones(1000, bool), []
+    habitat = of_task("Reacher-forager", 600)
+    born(habitat, 600)
+    all_alive, places = np.ones(600, bool), []
     for _ in range(20):
         before = habitat._bodies.views["qpos"][:, 2:].copy()
-        senses, outcome = habitat.step(np.full((1000, 2), 0.05, np.float32), all_alive)
+        senses, outcome = habitat.step(np.full((600, 2), 0.05, np.float32), all_alive)
         fed, after = outcome.food == 1, habitat._bodies.views["qpos"][:, 2:]
         apart = np.hypot(*habitat._bodies.views["xpos"]["fingertip"][:, :2].T)
         assert ((outcome.food == 0) | fed).all()
