@@ -138,9 +138,10 @@ def test_some_games_have_larger_screens() -> None:
     habitat = Atari(game="pacman", frame_skip=4, workers=0)
     habitat.open(1, watched=True)
     habitat.reset(np.array([0]), np.zeros((1, habitat.words), np.uint32))
-    habitat.step(np.zeros(1, np.int32), np.ones(1, bool))
+    for _ in range(60):
+        habitat.step(np.zeros(1, np.int32), np.ones(1, bool))
     screens, alone = habitat.seen()["screen"], console("pacman")
-    for _ in range(4):
+    for _ in range(4 * 60):
         alone.act(NOOP)
     np.testing.assert_array_equal(screens, alone.getScreenRGB()[None])
     habitat.close()

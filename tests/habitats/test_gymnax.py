@@ -1,6 +1,6 @@
 """Environments in JAX: lives from words and age, senses, actions, death, food, and errors."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from jax import lax
 
+from primordia.compiled import shared
 from primordia.config import validated
 from primordia.errors import InputError
-from primordia.habitats.contract import Ability, Continuous, Discrete
+from primordia.habitats.contract import Ability, Continuous, Discrete, Outcome
 from primordia.habitats.gymnax.habitat import Gymnax
 from primordia.habitats.gymnax.quantities import kind, parts
 from primordia.jaxprs import uses_first
@@ -24,19 +25,36 @@ def walk(**settings: Any) -> Gymnax:
     return Gymnax(env="tests.walks:Walk", **settings)
 
 
-def state_of(habitat: Gymnax, bodies: Any) -> Any:
-    """Return the states of bodies as the environment has them."""
+class Past(NamedTuple):
+    """What was seen of four bodies from birth on, (T + 1, 4, ...), and the outcomes of T ticks."""
+
+    state: Any
+    senses: np.ndarray
+    age: np.ndarray
+    held: np.ndarray | None
+    outcome: Outcome
+    born: Any
+
+
+def all_of(habitat: Gymnax, words: Any, actions: Any) -> Past:
+    """Return what is seen of lives with these actions, which are compiled as a whole."""
+
+    def tick(bodies: Any, action: Any) -> Any:
+        after, outcome = habitat.step(bodies, action)
+        return after, (after, outcome)
+
+    born = habitat.reset(words)
+    later, outcome = lax.scan(tick, born, actions)[1]
+    ages = jax.tree.map(lambda one, more: jnp.concatenate([one[None], more]), born, later)
     template = habitat.simulator.example.state
-    return jax.vmap(lambda packed: packed.state(habitat.senses_size, template))(bodies.packed)
+    state = jax.vmap(jax.vmap(lambda packed: packed.state(habitat.senses_size, template)))
+    return Past(state(ages.packed), habitat.sense(ages), ages.age.lo, ages.held, outcome, born)
 
 
-def lived(habitat: Gymnax, ticks: int, action: Any = STILL) -> tuple[Any, list[Any]]:
-    """Return the bodies after some ticks, and the outcome of each tick."""
-    bodies, outcomes = habitat.reset(WORDS), []
-    for _ in range(ticks):
-        bodies, outcome = habitat.step(bodies, action)
-        outcomes.append(outcome)
-    return bodies, outcomes
+def lived(habitat: Gymnax, action: Any = STILL) -> Any:
+    """Return what is seen of lives with one action of each body."""
+    actions = np.broadcast_to(action, (9, *action.shape))
+    return jax.tree.map(np.asarray, shared(all_of, habitat)(WORDS, actions))
 
 
 @pytest.mark.slow
@@ -46,26 +64,22 @@ def test_an_environment_of_ones_own_keeps_the_contract(name: str) -> None:
 
 
 def test_the_key_of_a_tick_is_that_of_the_birth_folded_with_the_age() -> None:
-    bodies, _ = lived(walk(), 3)
     with jax.threefry_partitionable(True):
         folded = jax.vmap(lambda key: jax.random.uniform(jax.random.fold_in(key, 3)))
         drawn = jax.jit(folded)(jax.random.wrap_key_data(WORDS, impl="threefry2x32"))
-    np.testing.assert_array_equal(state_of(walk(), bodies)["gust"], drawn)
+    np.testing.assert_array_equal(lived(walk()).state["gust"][3], drawn)
 
 
 def test_the_environments_time_limit_ends_a_life_only_if_it_is_kept() -> None:
-    def ends(**settings: Any) -> list[bool]:
-        return [bool(outcome.fatal.all()) for outcome in lived(walk(**settings), 9)[1]]
-
-    assert ends() == [False] * 8 + [True]
-    assert ends(time_limit=True) == [False] * 4 + [True] * 5
-    assert ends(params={"energy": 3}, time_limit=True).index(True) == 2
+    assert lived(walk()).outcome.fatal.all(axis=1).tolist() == [False] * 8 + [True]
+    assert walk().simulator.params.max_steps_in_episode > 2**30
+    assert walk(time_limit=True).simulator.params.max_steps_in_episode == 5
 
 
 def test_without_a_condition_no_life_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     """The test gives the values of a tick: two of four walks are done."""
     done = [True, False, False, True]
-    values = {"done": jnp.array(done)}
+    values = {"done": np.array(done)}
     monkeypatch.setattr(Gymnax, "tick", lambda self, bodies, action: (bodies, values))
     for fatal, ends in (
         ("", [False] * 4),
@@ -76,73 +90,62 @@ def test_without_a_condition_no_life_ends(monkeypatch: pytest.MonkeyPatch) -> No
 
 
 def test_death_and_food_can_speak_of_all_that_the_environment_says() -> None:
-    _, outcomes = lived(walk(fatal='state["energy"] < 7 or obs[2] > 8.5'), 4)
-    assert [bool(each.fatal[0]) for each in outcomes] == [False, False, True, True]
-    _, outcomes = lived(walk(fatal='state["tired"] and not done', food='sum(info["crossed"])'), 8)
-    assert [bool(each.fatal[0]) for each in outcomes] == [False] * 6 + [True, True]
-    crossed = (np.asarray(state_of(walk(), lived(walk(), 1)[0])["place"]) > 0).sum(axis=1)
-    np.testing.assert_array_equal(outcomes[0].food, crossed.astype(np.float32))
-
-
-def test_food_may_use_functions_and_is_not_reported_unless_asked_for() -> None:
-    bodies, (outcome,) = lived(walk(food="max(reward - 0.2, 0) + min(abs(obs[0]), 1)"), 1)
-    place = np.abs(np.asarray(state_of(walk(), bodies)["place"])[:, 0])
-    np.testing.assert_allclose(
-        outcome.food, np.maximum(place - 0.2, 0) + np.minimum(place, 1), 1e-6
-    )
-    assert lived(walk(), 1)[1][0].food is None
+    """The energy of a walk is 4 at birth, so half of its range is 2. Its senses are squashed."""
+    said = {
+        "fatal": 'state["tired"] and not done or obs[2] < -4.5',
+        "food": 'max(reward - 0.2, 0) + min(abs(obs[0]), 1) + sum(info["crossed"])',
+    }
+    past = lived(walk(**said, params={"energy": 4}, squash=True))
+    fatal = [False, True, True, *[False] * 5, True]
+    assert past.outcome.fatal.tolist() == [[each] * 4 for each in fatal]
+    place = past.state["place"]
+    size, crossed = np.abs(place[1:, :, 0]), (place[1:] > 0).sum(axis=2)
+    food = np.maximum(size - 0.2, 0) + np.minimum(size, 1) + crossed
+    np.testing.assert_allclose(past.outcome.food, food, 1e-6)
+    assert lived(walk()).outcome.food is None
+    squashed = place[..., 0] / (1 + np.abs(place[..., 0]))
+    np.testing.assert_allclose(past.senses[..., 0], squashed, 1e-6)
+    np.testing.assert_array_equal(past.senses[..., 1], place[..., 1])
+    np.testing.assert_allclose(past.senses[:3, 0, 2], [1, 0.5, 0], atol=1e-6)
 
 
 def test_outputs_within_one_fill_the_bounds_of_actions() -> None:
-    def moved(output: float) -> np.ndarray:
-        habitat = walk(params={"gusts": 1.0})
-        born = np.asarray(state_of(habitat, habitat.reset(WORDS))["place"])
-        bodies, _ = lived(habitat, 1, np.full((4, 2), output, np.float32))
-        return np.asarray(state_of(habitat, bodies)["place"]) - np.float32(0.9) * born
-
+    """A gust moves a walk by half of its action."""
     for output, action in [(-1, -2), (0, 1), (1, 4), (7, 4), (-7, -2)]:
-        np.testing.assert_allclose(moved(output), action, atol=1e-6)
+        place = lived(walk(), np.full((4, 2), output, np.float32)).state["place"]
+        moved = place[1:] - np.float32(0.9) * place[:-1]
+        np.testing.assert_allclose(moved, action / 2, atol=1e-5)
     assert walk().action == Continuous(2)
 
 
 def test_senses_are_scaled_where_their_space_has_bounds() -> None:
-    habitat = walk()
-    bodies, _ = lived(habitat, 3, np.ones((4, 2), np.float32))
-    place = np.asarray(state_of(habitat, bodies)["place"])
-    np.testing.assert_array_equal(habitat.sense(bodies)[:, :2], place)
-    np.testing.assert_allclose(habitat.sense(bodies)[:, 2], (6 - 4.5) / 4.5, 1e-6)
-    squashing = walk(squash=True)
-    squashed = squashing.sense(lived(squashing, 3, np.ones((4, 2), np.float32))[0])
-    np.testing.assert_allclose(squashed[:, 0], place[:, 0] / (1 + np.abs(place[:, 0])), 1e-6)
-    np.testing.assert_array_equal(squashed[:, 1], place[:, 1])
-
-
-def test_a_choice_is_an_action_and_rooms_are_senses_of_which_one_is_one() -> None:
-    habitat = Gymnax(env="tests.walks:Choice")
-    assert (habitat.action, habitat.senses_size) == (Discrete(3), 4)
-    bodies, _ = lived(habitat, 2, np.zeros(4, np.int32))
-    np.testing.assert_array_equal(habitat.sense(bodies)[0], np.eye(4)[7 % 4])
+    past = lived(walk(), np.ones((4, 2), np.float32))
+    np.testing.assert_array_equal(past.senses[..., :2], past.state["place"])
+    np.testing.assert_allclose(past.senses[3, :, 2], (6 - 4.5) / 4.5, 1e-6)
 
 
 def test_an_environment_like_playgrounds_is_perceived_as_by_a_policy_and_ends_when_done() -> None:
     habitat = Gymnax(env="tests.walks:Played", food='info["far"]', fatal="done")
     assert (habitat.action, habitat.senses_size) == (Continuous(2), 2)
-    bodies, outcomes = lived(habitat, 4, np.full((4, 2), 0.75, np.float32))
-    born = np.asarray(habitat.sense(habitat.reset(WORDS)))
-    np.testing.assert_allclose(habitat.sense(bodies), born + 3, 1e-5)
-    for tick, outcome in enumerate(outcomes, start=1):
-        far = np.abs(born + 0.75 * tick).max(axis=1)
-        np.testing.assert_allclose(outcome.food, far, 1e-5)
-        np.testing.assert_array_equal(outcome.fatal, far > 2)
+    past = lived(habitat, np.full((4, 2), 0.75, np.float32))
+    ticks = np.arange(10, dtype=np.float32)[:, None, None]
+    np.testing.assert_allclose(past.senses, past.senses[0] + 0.75 * ticks, 1e-5)
+    far = np.abs(past.senses[1:]).max(axis=2)
+    np.testing.assert_array_equal(past.outcome.food, far)
+    np.testing.assert_array_equal(past.outcome.fatal, far > 2)
+    assert not past.age.any(), "its ticks draw nothing"
     assert not habitat.simulator.changes_state()
     assert Gymnax(env="tests.walks:Overwriting").simulator.changes_state()
 
 
+def test_ages_are_counted_where_a_tick_draws() -> None:
+    assert (lived(walk()).age == np.arange(10)[:, None]).all()
+    assert Gymnax(env="tests.walks:Played", sticky=0.5)._draws
+
+
 def test_what_is_scored_has_the_reward_and_the_time_limit() -> None:
-    original = walk(fatal="obs[0] > 9", food="2").original()
-    _, outcomes = lived(original, 5)
-    assert outcomes[4].fatal.all()
-    assert (outcomes[0].food > 0).all()
+    kept = walk(time_limit=True).model_dump() | {"fatal": "done", "food": "reward"}
+    assert walk(fatal="obs[0] > 9", food="2").original().model_dump() == kept
 
 
 def test_parts_are_named_by_their_places_and_arrays_are_lists_of_numbers() -> None:
@@ -163,7 +166,7 @@ def test_equal_settings_share_compiled_code() -> None:
 def test_a_picture_is_drawn_of_what_is_sensed() -> None:
     habitat = walk()
     assert habitat.can(Ability.PICTURE)
-    body = jax.tree.map(lambda leaf: np.asarray(leaf)[0], habitat.reset(WORDS))
+    body = jax.tree.map(lambda leaf: leaf[0], lived(habitat).born)
     assert len(habitat.picture(body, STILL[0]).getcolors()) > 2
 
 
@@ -215,24 +218,16 @@ def test_it_is_known_whether_a_function_uses_its_first_argument() -> None:
     assert not uses_first(lambda a, b: b + 1, 1.0, 2.0)
 
 
-def test_ages_are_counted_only_where_a_tick_draws() -> None:
-    assert (np.asarray(lived(walk(), 3)[0].age.lo) == 3).all()
-    assert not np.asarray(lived(Gymnax(env="tests.walks:Played"), 3)[0].age.lo).any()
-    assert (np.asarray(lived(Gymnax(env="tests.walks:Played", sticky=0.5), 3)[0].age.lo) == 3).all()
-
-
-def test_a_sticky_action_is_that_of_the_tick_before_with_its_probability() -> None:
-    habitat, ticks = Gymnax(env="tests.walks:Choice", sticky=0.25), 400
-    chosen = np.tile(1 + np.arange(ticks, dtype=np.int32)[:, None] % 2, 4)
-
-    def tick(bodies: Any, action: Any) -> tuple[Any, Any]:
-        after, _ = habitat.step(bodies, action)
-        before, now = (state_of(habitat, each)["place"][:, 0] for each in (bodies, after))
-        return after, (now - before * 0.9, bodies.held)
-
-    moved, held = jax.jit(lambda words: lax.scan(tick, habitat.reset(words), chosen)[1])(WORDS)
-    made = np.round(np.asarray(moved) / 0.5).astype(int)
-    assert ((made == chosen) | (made == held)).all()
+def test_a_sticky_choice_is_that_of_the_tick_before_with_its_probability() -> None:
+    """Rooms are senses of which one is one."""
+    habitat = Gymnax(env="tests.walks:Choice", sticky=0.25)
+    assert (habitat.action, habitat.senses_size) == (Discrete(3), 4)
+    chosen = np.tile(1 + np.arange(400, dtype=np.int32)[:, None] % 2, 4)
+    past = jax.tree.map(np.asarray, shared(all_of, habitat)(WORDS, chosen))
+    np.testing.assert_array_equal(past.senses[:, 0], np.eye(4)[past.state["energy"][:, 0] % 4])
+    place = past.state["place"][..., 0]
+    made = np.round((place[1:] - place[:-1] * 0.9) / 0.5).astype(int)
+    assert ((made == chosen) | (made == past.held[:-1])).all()
     # An action that alternates differs from the one made in a fifth of the ticks.
     differs = (made != chosen).mean(axis=0)
     np.testing.assert_allclose(differs, 0.2, atol=0.06)

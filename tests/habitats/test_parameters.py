@@ -35,7 +35,10 @@ LENGTH = {
 }
 GRAVITY = {"kind": "parameter", "of": "gravity", "range": [3.0, 3.0], "at": [10]}
 AGAIN = {"kind": "parameter", "of": ["gravity"], "range": [0.5, 0.5], "at": [20]}
-CHANGES = [LENGTH, GRAVITY, AGAIN]
+REVERSED = {"kind": "reverse-actions", "at": [7, 30]}
+PERMUTED = {"kind": "permute-actions", "every": [5, 40]}
+INVERTED = {"kind": "invert-senses", "of": [0, 2], "every": [10, 10]}
+CHANGES = [LENGTH, GRAVITY, AGAIN, REVERSED, PERMUTED, INVERTED]
 
 
 def poles(*changes: dict[str, Any]) -> Any:
@@ -65,7 +68,8 @@ class HeldPoles(OnHost):
 
     def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
         step = shared(CartPole.step_scaled, self.inner)
-        self._bodies, outcome = step(self._bodies, action, self.factors)
+        after, outcome = step(self._bodies, action, self.factors)
+        self._bodies = np.where(alive[:, None], after, self._bodies)
         return np.array(self._bodies), outcome
 
 
@@ -81,9 +85,15 @@ def past() -> list[Any]:
 
 def expected(course: Any) -> np.ndarray:
     """Return the factors of CartPole's parameters at one age, from the states of CHANGES."""
-    length, gravity, again = course.state
+    length, gravity, again = course.state[:3]
     ones = np.ones(BODIES, np.float32)
     return np.stack([gravity * again, length, ones, ones, length], axis=1)
+
+
+def done(course: Any, action: np.ndarray) -> np.ndarray:
+    """Return what bodies do if their organisms choose these actions."""
+    reversed_, order = course.state[3:5]
+    return order[np.arange(BODIES), np.where(reversed_, 1 - action, action)]
 
 
 def test_factors_are_drawn_by_each_body_at_each_change(past: list[Any]) -> None:
@@ -101,21 +111,24 @@ def test_factors_are_drawn_by_each_body_at_each_change(past: list[Any]) -> None:
         assert (course.state[2] == (0.5 if age >= 20 else 1)).all()
 
 
-def test_bodies_move_as_their_factors_say(past: list[Any]) -> None:
+def test_bodies_move_as_their_factors_and_changed_actions_say(past: list[Any]) -> None:
     """Factors of several changes multiply, and those of one change are equal."""
     step = shared(CartPole.step_scaled, poles(*CHANGES).inner)
     for age in range(TICKS - 1):
-        after, _ = step(past[age].inner, ACTIONS[age], expected(past[age].course))
+        course = past[age].course
+        after, _ = step(past[age].inner, done(course, ACTIONS[age]), expected(course))
         np.testing.assert_array_equal(past[age + 1].inner, after)
+    assert 0 < past[-1].course.state[4][:, 0].mean() < 1
 
 
 def test_the_same_changes_come_on_the_host(past: list[Any]) -> None:
     held = HeldPoles()
     made: Any = changing(held, poles(*CHANGES).changes)
     made.open(BODIES)
-    senses = made.reset(np.arange(BODIES), WORDS)
+    senses, alive = made.reset(np.arange(BODIES), WORDS), np.ones(BODIES, bool)
     for age in range(TICKS - 1):
-        np.testing.assert_array_equal(senses, past[age].inner)
+        turned = np.where(past[age].course.state[5][:, None], np.float32([-1, 1, -1, 1]), 1)
+        np.testing.assert_array_equal(senses, past[age].inner * turned)
         np.testing.assert_array_equal(held.factors, expected(past[age].course))
         if age == 25:  # another habitat goes on from the saved arrays
             saved = {name: array.copy() for name, array in made.save().items()}
@@ -123,7 +136,10 @@ def test_the_same_changes_come_on_the_host(past: list[Any]) -> None:
             made = changing(held, made.changes)
             made.open(BODIES)
             made.load(saved)
-        senses, _ = made.step(ACTIONS[age], np.ones(BODIES, bool))
+        if age == 30:  # nothing changes for bodies at rest
+            made.step(ACTIONS[age], ~alive)
+        senses, _ = made.step(ACTIONS[age], alive)
+    np.testing.assert_array_equal(made.seen().course.times, past[-1].course.times)
     made.reset(np.arange(2), WORDS[:2])
     assert (held.born_with[-1] == 1).all()  # the last bodies of these cells had other factors
     np.testing.assert_array_equal(held.factors[2:], expected(past[-1].course)[2:])
@@ -155,7 +171,9 @@ def test_cartpole_with_factors_is_gymnasiums_with_other_parameters() -> None:
         np.testing.assert_allclose(ours, gym.state, rtol=1e-5, atol=1e-6)
 
 
-def test_a_caption_has_the_factors_that_are_not_1(past: list[Any]) -> None:
+def test_a_caption_has_the_factors_that_are_not_1_and_a_picture_what_is_done(
+    past: list[Any],
+) -> None:
     habitat = poles(*CHANGES)
     early, late = (jax.tree.map(lambda leaf: leaf[0], past[age]) for age in (0, TICKS - 1))
     assert habitat.caption(early, 1) == "action 1, 0 changes"
@@ -163,6 +181,13 @@ def test_a_caption_has_the_factors_that_are_not_1(past: list[Any]) -> None:
     assert habitat.caption(late, 1) == (
         f"action 1, {times} changes, gravity x 1.50, pole-length x {length:.2f}, force x {length:.2f}"
     )
+    for body in range(4):
+        one = jax.tree.map(lambda leaf, body=body: leaf[body], past[20])
+        does = done(past[20].course, np.ones(BODIES, int))[body]
+        own = one.inner, does, expected(past[20].course)[body]
+        picture = habitat.inner.picture_scaled(*own).tobytes()
+        assert habitat.picture(one, np.int32(1)).tobytes() == picture
+        assert habitat.picture(one, np.int32(0)).tobytes() != picture
 
 
 def cheetahs(*changes: dict[str, Any], **own: Any) -> Any:
