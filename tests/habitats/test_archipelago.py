@@ -25,6 +25,7 @@ from tests.toys import Clocked, Mill, Mirror, Watch
 
 SHORE = Islands(("west", "east"), (0, 2, 5))
 """Cells 0 and 1, and cells 2 to 4."""
+METHODS = "reset", "step", "sense"
 
 
 class Keys(JaxHabitat):
@@ -103,14 +104,15 @@ def test_bodies_on_islands_on_the_host_are_those_in_jax() -> None:
     held.reset(cells, words[::-1])
     born = np.array([8, 1, 5, 0])
     senses = held.reset(born, words[born])
-    np.testing.assert_array_equal(senses, np.asarray(in_jax.sense(in_jax.reset(words)))[born])
+    reset, step, sense = (shared(getattr(type(in_jax), name), in_jax) for name in METHODS)
+    bodies = reset(words)
+    np.testing.assert_array_equal(senses, np.asarray(sense(bodies))[born])
     held.reset(cells, words)
-    bodies, step = in_jax.reset(words), shared(type(in_jax).step, in_jax)
     for tick in range(4):
         action = rng.normal(size=(10, in_jax.action.size)).astype(np.float32)
         bodies, expected = step(bodies, action)
         senses, outcome = held.step(action, np.ones(10, bool))
-        np.testing.assert_array_equal(senses, np.asarray(in_jax.sense(bodies)))
+        np.testing.assert_array_equal(senses, sense(bodies))
         for name in ("fatal", "food", "effort"):
             np.testing.assert_array_equal(getattr(outcome, name), getattr(expected, name))
         if tick == 1:
@@ -206,12 +208,13 @@ def test_factors_are_those_of_step_scaled() -> None:
     factors = {"force": 0.5, "pole-length": 3.0}
     light, plain = poles(factors=factors), CartPole()
     row = np.float32([[factors.get(name, 1.0) for name in plain.parameters]] * BODIES)
-    bodies = plain.reset(WORDS[:, :4])
+    bodies = WORDS[:, :4].astype(np.float32) * np.float32(2**-32)
     push = ACTIONS[0]
     mine = shared(type(light).step, light)(bodies, push)[0]
     expected = shared(CartPole.step_scaled, plain)(bodies, push, row)[0]
     np.testing.assert_array_equal(mine, expected)
-    assert not np.array_equal(mine, shared(CartPole.step, plain)(bodies, push)[0])
+    usual = shared(CartPole.step_scaled, plain)(bodies, push, np.ones_like(row))[0]
+    assert not np.array_equal(mine, usual)
     twice = shared(type(light).step_scaled, light)(bodies, push, row)[0]
     expected = shared(CartPole.step_scaled, plain)(bodies, push, row * row)[0]
     np.testing.assert_array_equal(twice, expected)

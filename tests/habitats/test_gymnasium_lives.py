@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import tomli_w
 from pyarrow.parquet import read_table
 
 pytest.importorskip("gymnasium")
@@ -39,7 +40,10 @@ def pond(name: str = "Pond", **habitat: Any) -> dict[str, Any]:
     [
         pytest.param("Pond", {"saving": "replay", "workers": 2}, marks=pytest.mark.slow),
         ("Pond", {"saving": "restart", "time_limit": 7, "workers": 0}),
-        ("Odd", {"saving": "snapshot", "squash": True, "scale": (50.0,), "workers": 0}),
+        (
+            "Odd",
+            {"saving": "snapshot", "squash": True, "scale": (50.0,), "time_limit": 7, "workers": 0},
+        ),
         pytest.param("Closed", {"saving": "replay", "workers": 0}, marks=pytest.mark.slow),
         ("Worn", {"saving": "replay", "fresh": True, "workers": 0}),
     ],
@@ -104,8 +108,9 @@ def test_a_simulator_that_writes_to_standard_output_lives_as_a_quiet_one(capfd: 
 
 
 def test_an_error_kills_its_organism_and_leaves_its_last_line(tmp_path: Path, capfd: Any) -> None:
-    settings = {**HOSTED, "habitat": {"workers": 0}, "stop": {"ticks": 150}}
-    run = primordia.run("gym:tests.ponds:Crashing-v0", tmp_path / "run", settings)
+    task = {**pond("Crashing"), "stop": {"ticks": 60, "until": "none"}}
+    (tmp_path / "pond.toml").write_text(tomli_w.dumps(task))
+    run = primordia.run(str(tmp_path / "pond.toml"), tmp_path / "run")
     lines = (tmp_path / "run" / "faults.txt").read_text().splitlines()
     deaths = read_table(run.path / "deaths").to_pandas()
     failed = deaths[deaths.cause == "fault"]
@@ -171,13 +176,6 @@ def test_too_many_errors_stop_the_run() -> None:
     )
     with pytest.raises(Trouble, match=says):
         Lived(config(pond("Crashing", faults=2)), 200)
-
-
-def test_a_life_that_does_not_repeat_is_noticed_when_it_is_needed() -> None:
-    lived = Lived(config(pond("Hidden", saving="replay")), 20)
-    arrays = lived.engine.arrays()
-    with pytest.raises(Trouble, match=r"did not repeat its life of \d+ ticks"):
-        Lived(config(pond("Hidden", saving="replay")), 1).engine.load(arrays)
 
 
 @pytest.mark.parametrize(

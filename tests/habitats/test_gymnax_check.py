@@ -29,16 +29,6 @@ def test_what_is_wrong_is_found() -> None:
     ]
 
 
-def test_functions_that_keep_something_between_calls_are_found(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """JAX forgets what it has traced before; here it only says so, to save time."""
-    cleared = list[str]()
-    monkeypatch.setattr(jax, "clear_caches", lambda: cleared.append("all"))
-    assert not Gymnax(env="tests.walks:Counting").simulator.repeats()
-    assert cleared == ["all"]
-
-
 def test_lives_are_measured(monkeypatch: pytest.MonkeyPatch) -> None:
     """The test keeps JAX's caches, to save time."""
     monkeypatch.setattr(jax, "clear_caches", lambda: None)
@@ -102,10 +92,11 @@ def test_values_of_a_body_that_has_ended_are_no_fault() -> None:
     nan = np.nan
     senses = SimpleNamespace(declared=lambda obs: (jnp.abs(obs) <= 9).all(axis=1))
     habitat: Any = SimpleNamespace(senses=senses)
-    values = {"done": jnp.array([False, True, True]), "reward": jnp.float32([1, 2, nan]),
-              "obs": jnp.float32([[3, -4], [5, 0], [nan, 70]])}  # fmt: skip
-    seen = check._seen(habitat, values, jnp.array([True, True, False]))
+    values = {"done": np.array([False, True, True]), "reward": np.float32([1, 2, nan]),
+              "obs": np.float32([[3, -4], [5, 0], [nan, 70]])}  # fmt: skip
+    found = jax.jit(lambda alive: check._seen(habitat, values, alive))
+    seen = found(np.array([True, True, False]))
     assert [bool(each) for each in (seen.inside, seen.finite, seen.rewarded)] == [True] * 3
     assert seen.largest.tolist() == [5, 4]
-    seen = check._seen(habitat, values, jnp.array([False, True, True]))
+    seen = found(np.array([False, True, True]))
     assert [bool(each) for each in (seen.inside, seen.finite, seen.rewarded)] == [False] * 3

@@ -4,13 +4,10 @@ from typing import Any
 
 import jax
 import numpy as np
-import pytest
 from jax import lax
 
 from primordia.compiled import jit
-from primordia.habitats.gymnax.habitat import Gymnax
 from primordia.habitats.gymnax.sums import ordered
-from primordia.random.trials import words
 
 
 def test_a_sum_over_nothing_is_zero_and_nothing_has_no_sums() -> None:
@@ -33,22 +30,6 @@ def test_sums_and_products_of_a_row_do_not_depend_on_the_number_of_rows() -> Non
 
     for many, alone in zip(jit(ordered(summed))(rows), jit(ordered(summed))(rows[:1]), strict=True):
         np.testing.assert_array_equal(many[:1], alone)
-
-
-@pytest.mark.slow
-def test_sums_and_matrix_products_do_not_depend_on_the_number_of_bodies() -> None:
-    habitat = Gymnax(env="tests.walks:Turning", food="reward")
-
-    def lived(words: Any) -> Any:
-        def tick(bodies: Any, _: None) -> Any:
-            bodies, outcome = habitat.step(bodies, np.zeros((len(words), 2), np.float32))
-            return bodies, (habitat.sense(bodies), outcome.food)
-
-        return lax.scan(tick, habitat.reset(words), length=8)[1]
-
-    born = words(0, 32, habitat.words)
-    for many, alone in zip(jit(lived)(born), jit(lived)(born[:1]), strict=True):
-        np.testing.assert_array_equal(many[:, :1], alone)
 
 
 def test_sums_and_matrix_products_are_those_of_numpy() -> None:

@@ -100,19 +100,6 @@ def test_scores_are_gymnasiums(task: str, name: str, tolerance: float) -> None:
     assert ours == pytest.approx(paid, rel=tolerance, abs=tolerance)
 
 
-def test_our_reacher_has_no_lag() -> None:
-    """Gymnasium's reacher sees the fingertip as it was a substep ago (`mj_step`); ours sees it now."""
-    habitat = of_task("Reacher-forager", target={"within": 1e-9})
-    born(habitat)
-    env = started_alike("Reacher-v5", habitat, 0)
-    senses, _ = habitat.step(np.full((4, 2), 0.3, np.float32), FOUR)
-    seen = env.step(np.full(2, 0.3, np.float32))[0]
-    assert not np.allclose(senses[0, 8:10], seen[8:10], atol=1e-6)
-    mujoco.mj_kinematics(env.model, env.data)
-    apart = env.data.body("fingertip").xpos - env.data.body("target").xpos
-    np.testing.assert_array_equal(senses[0, 8:], apart.astype(np.float32))
-
-
 def test_a_body_is_a_function_of_its_words_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     """The body does not depend on the number of bodies, its cell, or the number of cores.
 
@@ -185,24 +172,6 @@ def test_the_dead_are_not_stepped_and_a_failure_does_not_disturb_other_bodies() 
         np.testing.assert_array_equal(before[1], habitat._bodies.views["qvel"][2])
         np.testing.assert_array_equal(senses[[0, 3]], others[[0, 3]])
         assert outcome.fault[1] or not np.isfinite(senses[1]).all()
-
-
-def test_named_amounts_are_those_of_the_model() -> None:
-    """Height and pitch of a hopper are those of its joints; distances add up."""
-    habitat = of_task(
-        "Hopper-survival", senses=["height", "pitch", "forward", "travelled"], fatal="pitch > 9"
-    )
-    senses = born(habitat)
-    assert (senses[:, 2:] == 0).all()
-    start, gone = habitat._bodies.views["qpos"][:, 0].copy(), 0.0
-    for _ in range(15):
-        senses, _ = habitat.step(np.full((4, 3), -0.4, np.float32), FOUR)
-        position = habitat._bodies.views["qpos"]
-        np.testing.assert_allclose(senses[:, 0], position[:, 1], atol=1e-6)
-        np.testing.assert_allclose(senses[:, 1], position[:, 2], atol=1e-6)
-        assert (senses[:, 3] >= 0).all()
-        gone = gone + senses[:, 2]
-    np.testing.assert_allclose(gone, position[:, 0] - start, atol=1e-5)
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from primordia.habitats.bodies import not_finite
 from primordia.habitats.cartpole.habitat import CartPole
 from primordia.habitats.contract import Ability, Outcome
 from primordia.habitats.on_host import OnHost
-from tests.toys import Echo, Meadow, Mill
+from tests.toys import Echo, Meadow
 
 WORDS = np.random.default_rng(0).integers(0, 2**32, (8, 4), np.uint32)
 ALL = np.arange(8)
@@ -57,9 +57,9 @@ def test_only_the_living_are_stepped() -> None:
 
 
 def test_saved_bodies_continue_in_another_habitat() -> None:
-    one, other = opened(Mill()), opened(Mill())
-    one.reset(ALL, WORDS[:, :2])
-    action, alive = np.full((8, 2), 0.3, np.float32), np.ones(8, bool)
+    one, other = opened(), opened()
+    one.reset(ALL, WORDS)
+    action, alive = ALL.astype(np.int32) % 2, np.ones(8, bool)
     for _ in range(9):
         one.step(action, alive)
     other.load(one.save())
