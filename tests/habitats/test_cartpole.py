@@ -60,6 +60,7 @@ def apart(ours: Any, theirs: Any) -> float:
     return float(np.abs((np.asarray(ours)[0] - theirs) / np.maximum(np.abs(theirs), 1e-3)).max())
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("_float64")
 def test_whole_episodes_agree_in_float64(gym_cartpole: Any) -> None:
     """Short episodes of random pushes agree as a whole; long episodes agree in each single step.
@@ -128,15 +129,6 @@ def test_limits_are_settings(change: dict, fatal: list[int]) -> None:
     habitat = CartPole(**change)
     _, outcome = shared(CartPole.step, habitat)(STATES, np.zeros(9, np.int32))
     assert np.asarray(outcome.fatal).tolist() == [bool(each) for each in fatal]
-
-
-def test_the_cart_is_drawn_where_it_is() -> None:
-    """Its middle moves from 60 pixels before the left edge to 60 before the right one."""
-    cart = np.array([35, 57, 91])
-    for x, middle in ((-2.4, 60), (0.0, 320), (1.2, 450), (2.4, 580)):
-        picture = np.asarray(draw(np.array([x, 0, 0, 0], np.float32), 1, 2.4).convert("RGB"))
-        columns = np.flatnonzero((np.abs(picture.astype(int) - cart).sum(axis=2) < 20).any(axis=0))
-        assert abs((columns[0] + columns[-1]) / 2 - middle) < 4
 
 
 def coloured(picture: np.ndarray, colour: tuple[int, int, int]) -> tuple[np.ndarray, np.ndarray]:

@@ -71,20 +71,6 @@ def test_a_task_is_made_from_lives_at_random() -> None:
     assert validated(table, source="test").build_habitat().env in table["about"]
 
 
-@pytest.mark.slow
-def test_what_is_known_of_an_environment_is_said() -> None:
-    _, facts, faults = task("CartPole-v1")
-    assert faults == []
-    for line in (
-        "Observation: 4 numbers, obs[0] to obs[3] in conditions.",
-        "Action: one of 2.",
-        'Numbers in info: info["discount"].',
-        "The environment's time limit (max_steps_in_episode) is off;"
-        " time_limit = true turns the limit on.",
-    ):
-        assert line in facts
-
-
 def test_a_name_that_is_not_known_suggests_one() -> None:
     with pytest.raises(InputError, match="did you mean 'Breakout-MinAtar'"):
         task("Breakout-minatar")

@@ -3,7 +3,6 @@
 from pathlib import Path
 from typing import Any
 
-import av
 import numpy as np
 import pytest
 import tomli_w
@@ -110,19 +109,6 @@ def test_pictures_show_the_robot_in_its_place(task: str) -> None:
     pose["qpos"][-3:] += 0.5
     assert (np.abs(np.asarray(habitat.picture(pose, action)) - first).max(axis=2) > 40).sum() > 50
     assert (first[:56] == first[0, 0]).all()
-
-
-@pytest.mark.slow
-def test_a_video_shows_a_life(boxes: Path, tmp_path: Path) -> None:
-    needs_gl()
-    path = tmp_path / "life.mp4"
-    done = here("replay", boxes, "--to", 10, "--out", path)
-    assert (done.returncode, done.stdout.strip()) == (0, str(path))
-    with av.open(str(path)) as container:
-        frames = [frame.to_ndarray(format="rgb24") for frame in container.decode(video=0)]
-        assert container.streams.video[0].average_rate == 50
-    assert frames[0].shape == (416, 640, 3)
-    assert len(frames) >= 10
 
 
 def test_without_opengl_the_error_says_what_to_install(

@@ -6,34 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import tomli_w
 
-import primordia
 from primordia.habitats.mujoco import simulator as mujoco_model
 from tests import commands
 from tests.commands import complains, here
-from tests.habitats.test_mujoco_lives import BOX
-from tests.robots import MOTOR, SLIDE, born, opened
+from tests.robots import SLIDE, born, opened
 
 mujoco = pytest.importorskip("mujoco")
-
-
-@pytest.mark.slow
-def test_a_model_named_by_a_flag_is_found_from_elsewhere(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (tmp_path / "box.xml").write_text(SLIDE.format(actuator=MOTOR))
-    (tmp_path / "elsewhere").mkdir()
-    (tmp_path / "elsewhere" / "box.toml").write_text(
-        tomli_w.dumps(BOX).replace("box.xml", "gymnasium:reacher.xml")
-    )
-    monkeypatch.chdir(tmp_path)
-    habitat = {"file": "box.xml", "scored": {"file": "box.xml"}}
-    run = primordia.run("elsewhere/box.toml", "run", habitat=habitat, stop={"ticks": 5})
-    monkeypatch.chdir(tmp_path / "elsewhere")
-    run = primordia.load(tmp_path / run.path)
-    assert run.resume(ticks=8) == []
-    assert run.oldest().evaluate(ticks=3).whole is not None
 
 
 def test_sites_are_perceived_in_three_coordinates(tmp_path: Path) -> None:

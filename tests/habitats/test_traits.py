@@ -85,15 +85,6 @@ def test_pictures_and_captions_show_traits() -> None:
         "CartPole-survival", {"habitat": {"factors": {"pole-length": 2.0}}}
     ).build_habitat()
     assert scaled.picture(seen[0].inner, np.int32(1)).tobytes() == doubled.tobytes()
-    halves = {"kind": "parameter", "of": "pole-length", "range": [0.5, 0.5], "at": [1]}
-    changed: Any = load("CartPole-survival", {"habitat": {"change": [halves]}}).build_habitat()
-    after, _ = changed.step(
-        changed.reset(np.zeros((1, changed.words), np.uint32)), np.zeros(1, int)
-    )
-    one = jax.tree.map(lambda leaf: np.asarray(leaf)[0], after)
-    half = changed.inner.picture_scaled(one.inner, np.int32(1), np.float32([1, 0.5, 1, 1, 1]))
-    assert changed.picture(one, np.int32(1)).tobytes() == half.tobytes()
-    assert half.tobytes() != changed.inner.picture(one.inner, np.int32(1)).tobytes()
 
 
 def test_bodies_on_the_host_move_as_those_in_jax() -> None:
@@ -142,10 +133,8 @@ def _row(bodies: Any, row: int) -> Any:
     [
         ({"pole": {"least": 0.5, "most": 2.0}}, "there is no physical parameter 'pole'"),
         ({"force": {"of": ["forse"], "least": 0.5, "most": 2.0}}, "did you mean 'force'?"),
-        ({"force": {"least": 2.0, "most": 0.5}}, "must be in this order"),
         ({"force": {"least": 0.5, "most": 2.0, "founder": 3.0}}, "must be in this order"),
         ({"force": {"least": 0, "most": 2.0}}, "habitat.traits.force.least"),
-        ({"force": {"most": 2.0}}, "habitat.traits.force.least"),
         ({"force": 2}, "habitat.traits.force"),
         ({}, "write a table for each trait"),
     ],
@@ -249,7 +238,6 @@ JUMPER = """<mujoco><worldbody><geom name="floor" type="plane" size="5 5 0.1"/>
     [
         ("<freejoint/>", 1.7),
         ('<joint type="slide" axis="0 0 1"/>', 1.7),
-        ('<joint type="slide" axis="1 0 0"/>', 1.0),
         ('<joint type="hinge" axis="0 1 0"/>', 1.0),
     ],
 )
@@ -320,10 +308,8 @@ def test_a_robot_with_the_founders_genes_is_the_usual_robot() -> None:
     ("attribute", "says"),
     [
         ("geom.bo.size", "the model has no geom called 'bo'; did you mean 'box'?"),
-        ("geom.box", "write KIND.NAME.ATTRIBUTE"),
         ("light.box.pos", "write KIND.NAME.ATTRIBUTE"),
         ("geom.box.weight", "a geom has no numbers called 'weight'"),
-        ("geom.box.name", "a geom has no numbers called 'name'"),
         ("geom.box.size[7]", "size of a geom has 3 numbers, from 0"),
         ("geom.box.size[2]", "is not a number other than 0 in the file"),
         ("geom.box.mass", "is not a number other than 0 in the file"),
