@@ -30,7 +30,8 @@ ALIKE: list[Any] = [
     pytest.param("Walker-survival-forager", "Walker2d-v5", {"xml_file": "walker2d.xml"},
                  {"timestep": "none"}, slice(0, 17), marks=pytest.mark.slow),
     ("Hopper-survival", "Hopper-v5", {}, {}, slice(0, 11)),
-    ("Humanoid-homeostasis", "Humanoid-v5", {}, {"timestep": "none"}, slice(0, 45)),
+    pytest.param("Humanoid-homeostasis", "Humanoid-v5", {}, {"timestep": "none"}, slice(0, 45),
+                 marks=pytest.mark.slow),
     ("Reacher-forager", "Reacher-v5", {}, {}, slice(0, 8)),
 ]  # fmt: skip
 
