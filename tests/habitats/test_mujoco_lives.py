@@ -1,4 +1,4 @@
-"""Lives of robots: exact after a resume, in a fork and when lived again; shown on video."""
+"""Lives of robots: exact through a stop and when lived again; shown in pictures."""
 
 from pathlib import Path
 from typing import Any
