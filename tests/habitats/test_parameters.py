@@ -246,8 +246,8 @@ def test_an_environment_offers_the_numbers_that_its_steps_use() -> None:
     assert walk.parameters == ("gusts",)
     action = RNG.normal(size=(4, 2)).astype(np.float32)
     factors = np.where(np.arange(4) % 2, 3.0, 1.0).astype(np.float32)[:, None]
-    born = walk.reset(WORDS[:4, :2])
-    after, outcome = walk.step_scaled(born, action, factors)
+    born = shared(Gymnax.reset, walk)(WORDS[:4, :2])
+    after, outcome = shared(Gymnax.step_scaled, walk)(born, action, factors)
     place, later = (np.asarray(walk.sense(bodies))[:, :2] for bodies in (born, after))
     moved = (3 * np.clip(action, -1, 1) + 1) * 0.5 * factors
     np.testing.assert_allclose(later, 0.9 * place + moved, rtol=1e-5, atol=1e-6)
