@@ -50,7 +50,7 @@ BRAINS = {name: build(table) for name, table in TABLES.items()}
 SENSES, OUTPUTS, MOST, TICKS = 5, 3, 1024, 6
 
 QUICK = ("recurrent, biases", "feed-forward, biases", "gated, biases", "linear, biases", "plastic")
-CHECKED = ("gated, biases", "plastic")
+CHECKED = ("plastic",)
 """`tests/engine/test_exactness.py` and `tests/testing/test_brain.py` have brains of the other kinds."""
 
 

@@ -54,6 +54,7 @@ def test_samples_are_at_the_same_multiples(start: tuple[int, int]) -> None:
             np.testing.assert_array_equal(metrics[name][in_world], values, name)
 
 
+@pytest.mark.slow
 def test_late_worlds_keep_the_rules_of_every_world() -> None:
     """Random draws differ, since ticks do; the rules are the same."""
     start = SHORTLY_BEFORE_2_32

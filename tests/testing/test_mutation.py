@@ -130,11 +130,6 @@ class Ranked(Counted):
         return jnp.arange(count, dtype=jnp.int32)[:, None]
 
 
-class Neighbourly(Counted):
-    def note(self, layout: Layout, family: Family, change: Change | None) -> Array:
-        return jnp.cumsum(family.notes, axis=0) + 1
-
-
 class Open(Steady):
     def governed(self, setting: str, layout: Layout) -> list[str]:
         return ["scale"]
@@ -184,7 +179,6 @@ def test_products_that_are_added_are_no_fault() -> None:
         (Clustered(), "organism 31 when 1 instead of 32 are born together"),
         (Real(), r"gives notes as float32 \(32, 1\); the contract says int32 \(32, 1\)"),
         (Ranked(), "gives founders different notes"),
-        (Neighbourly(), "instead of 32 are born together"),
         (Open(), "a season of a setting that the mutation does not have; return"),
         (Closed(), "has a rate scale that no season of scale changes"),
         (Elsewhere(), "a season of .* changes .*size.*, which `rates` lacks"),
