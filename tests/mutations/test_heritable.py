@@ -19,17 +19,6 @@ def family(mutation: Gaussian, quarters: int = 0) -> Family:
     return Family(parents, notes, rates(mutation, LAYOUT, K), drawn(K))
 
 
-def test_the_exponent_of_a_mutant_takes_any_step_up_to_the_stride() -> None:
-    mutation, stride = Heritable(stride=3, probability=0.5), 3
-    notes = noted(mutation, LAYOUT, family(mutation, 5))
-    mutants = inherited(mutation, LAYOUT, family(mutation))[1]
-    assert (notes[~mutants] == 5).all()
-    steps, counts = np.unique(notes[mutants] - 5, return_counts=True)
-    assert steps.tolist() == list(range(-stride, stride + 1))
-    expected = mutants.sum() / len(steps)
-    assert (abs(counts - expected) < 5 * expected**0.5).all()
-
-
 def test_the_step_of_a_mutant_is_drawn_by_its_second_word() -> None:
     """Draw 0 of a birth decides whether the child is a mutant. Draw 1 gives the change of q."""
     mutation = Heritable(stride=3, probability=0.5)

@@ -157,11 +157,6 @@ class Misled(Steady):
         return {"scale": ["scale"], "size_of_blocks": ["size"]}.get(setting, [])
 
 
-class Few(Steady):
-    def founders(self, layout: Layout, draws: Draws) -> Array:
-        return super().founders(layout, draws)[:, 1:]
-
-
 def test_products_that_are_added_are_no_fault() -> None:
     check_mutation(Contracted())
 
@@ -183,10 +178,6 @@ def test_products_that_are_added_are_no_fault() -> None:
         (Closed(), "has a rate scale that no season of scale changes"),
         (Elsewhere(), "a season of .* changes .*size.*, which `rates` lacks"),
         (Misled(), "a season of size_of_blocks changes size, which `rates` lacks"),
-        (
-            Few(),
-            r"gives genomes of founders as float32 \(32, 83\); the contract says .* \(32, 84\)",
-        ),
     ],
     ids=lambda each: type(each).__name__ if isinstance(each, Mutation) else "",
 )
