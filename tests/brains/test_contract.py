@@ -50,8 +50,6 @@ BRAINS = {name: build(table) for name, table in TABLES.items()}
 SENSES, OUTPUTS, MOST, TICKS = 5, 3, 1024, 6
 
 QUICK = ("recurrent, biases", "feed-forward, biases", "gated, biases", "linear, biases", "plastic")
-CHECKED = ("plastic",)
-"""`tests/engine/test_exactness.py` and `tests/testing/test_brain.py` have brains of the other kinds."""
 
 
 def minds(brain: Brain) -> tuple[dict[str, Any], Any, Any]:
@@ -72,13 +70,8 @@ def lived(brain: Brain, genome: Any, memory: Any, senses: Any) -> tuple:
     return jax.lax.scan(lambda memory, seen: brain(genome, memory, seen), memory, senses)
 
 
-@pytest.mark.parametrize(
-    "brain",
-    [
-        pytest.param(brain, id=name, marks=() if name in CHECKED else pytest.mark.slow)
-        for name, brain in BRAINS.items()
-    ],
-)
+@pytest.mark.slow  # `tests/engine/test_exactness.py` and `tests/testing/test_brain.py` have brains
+@pytest.mark.parametrize("brain", BRAINS.values(), ids=BRAINS)
 def test_a_brain_keeps_the_contract(brain: Brain) -> None:
     check_brain(brain, SENSES, OUTPUTS)
 

@@ -33,7 +33,7 @@ from tests.goldens import POLES
 from tests.history.test_rebuilding import assert_rebuilt
 from tests.strange import BLOCKS, GIVING, PASSING, QUIET, SEEDS, STRANGE, STRANGER, TICKS
 from tests.test_goldens import assert_lived_as_it_did
-from tests.worlds import MILLS, Lived, config
+from tests.worlds import HERD, MILLS, Lived, config
 
 WORLDS = {
     "strange": STRANGE,
@@ -47,7 +47,9 @@ FURTHER = [pytest.param(name, marks=pytest.mark.slow) for name in WORLDS if name
 
 def on_host(settings: dict[str, Any], habitat: str) -> dict[str, Any]:
     """Return the settings of the same worlds in a habitat on the host."""
-    return {**settings, "habitat": {"name": f"tests.toys:{habitat}", "inner": "mill"}}
+    inner = settings["habitat"]["name"].removeprefix("tests.toys:").lower()
+    name = f"tests.toys:{habitat}"
+    return {**settings, "habitat": {**settings["habitat"], "name": name, "inner": inner}}
 
 
 @pytest.fixture(scope="module", params=["passing", *FURTHER])
@@ -82,13 +84,14 @@ def run(settings: dict[str, Any], tmp_path_factory: pytest.TempPathFactory) -> P
 
 
 @pytest.fixture(
-    scope="module", params=["mills", *(pytest.param(w, marks=pytest.mark.slow) for w in WORLDS)]
+    scope="module",
+    params=["herd", *(pytest.param(w, marks=pytest.mark.slow) for w in ("mills", *WORLDS))],
 )
 def twins(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> tuple[Lived, Path]:
     """The same worlds in JAX, and in a habitat on the host that tallies the ticks of each life."""
-    settings = {"mills": MILLS, **WORLDS}[request.param]
+    settings = {"herd": HERD, "mills": MILLS, **WORLDS}[request.param]
     path = tmp_path_factory.mktemp("clocked") / "run"
     loop.start(config(on_host(settings, "Clocked"), stop={"ticks": 99}), path)
     loop.resume(path, {"ticks": TICKS})

@@ -229,8 +229,7 @@ def test_nodes_of_the_phylogeny_in_the_report_have_their_traits(run: Path) -> No
 
 def test_portraits_show_ancestors_with_their_own_bodies(run: Path) -> None:
     opened, loaded = Archive(run), primordia.load(run)
-    own, moon = opened.lives.of_world(1), opened.config.islands.sizes[0]
-    organism = int(own.id[np.flatnonzero(own.cell < moon)[-1]])
+    organism = int(opened.lives.of_world(1).id[opened.lives.of_world(1).rank.argmax()])
     found = loaded.ancestors(organism, 1)
     figure = portraits.draw(opened, found)
     assert figure is not None
