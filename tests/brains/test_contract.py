@@ -42,9 +42,15 @@ BRAINS = {name: build(table) for name, table in TABLES.items()}
 SENSES, OUTPUTS = 5, 3
 
 
-@pytest.mark.slow  # `tests/engine/test_exactness.py` and `tests/testing/test_brain.py` have brains
-@pytest.mark.parametrize("brain", BRAINS.values(), ids=BRAINS)
+@pytest.mark.parametrize(
+    "brain",
+    [
+        pytest.param(brain, id=name, marks=() if name == "plastic" else pytest.mark.slow)
+        for name, brain in BRAINS.items()
+    ],
+)
 def test_a_brain_keeps_the_contract(brain: Brain) -> None:
+    """`tests/engine/test_exactness.py` and `tests/testing/test_brain.py` have brains of other kinds."""
     check_brain(brain, SENSES, OUTPUTS)
 
 

@@ -43,8 +43,7 @@ def test_a_numpy_habitat_is_exact_in_chunks_of_any_length() -> None:
     [
         (CartPole(), "recurrent"),
         pytest.param(Mill(), "feed-forward", marks=pytest.mark.slow),
-        pytest.param(Mill(), "gated", marks=pytest.mark.slow),
-        (Mill(), "plastic"),
+        (Mill(), "gated"),
     ],
 )
 def test_brains_and_bodies_do_not_depend_on_their_number(kind: str, habitat) -> None:
