@@ -94,7 +94,7 @@ def test_a_mapped_loop_ends_for_each_by_itself() -> None:
     def grown(x: Any) -> Any:
         return lax.while_loop(lambda x: x[0] < 9, lambda x: (x[0] * 1.7 + 0.3, x[1] + 1), (x, 0))
 
-    sizes, steps = jit(jax.vmap(jax.vmap(grown)))(start)
+    sizes, steps = map(np.asarray, jit(jax.vmap(jax.vmap(grown)))(start))
     for x, size, count in zip(start.ravel(), sizes.ravel(), steps.ravel(), strict=True):
         taken = 0
         while x < 9:
@@ -107,7 +107,7 @@ def test_an_angle_does_not_depend_on_how_many_there_are() -> None:
     compiled = jit(jnp.arctan)
     whole = np.asarray(compiled(numbers))
     np.testing.assert_allclose(whole, np.arctan(numbers), rtol=1e-6)
-    for count in (1, 3, 31, 63, 100):
+    for count in (1, 31, 100):
         np.testing.assert_array_equal(compiled(numbers[:count]), whole[:count])
 
 
@@ -138,6 +138,6 @@ def test_constants_and_divisions_are_computed_as_they_are_written(compute: Any) 
     """Without the cure each has other bits than NumPy's, at least with JAX 0.10.2."""
     numbers = np.random.default_rng(0).normal(size=(3, 1000)).astype(np.float32)
     compiled = jit(compute)
-    for count in (1, 3, 8, 31, 1000):
+    for count in (1, 31, 1000):
         given = numbers[:, :count]
         np.testing.assert_array_equal(compiled(*given), compute(*given))

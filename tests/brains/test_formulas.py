@@ -3,7 +3,7 @@
 from itertools import pairwise
 from typing import Any
 
-import jax.numpy as jnp
+import jax
 import numpy as np
 import pytest
 
@@ -113,22 +113,18 @@ def rows(block: np.ndarray, hidden: int) -> np.ndarray:
     return (block if inputs_first else block.transpose(0, 2, 1)).astype(float)
 
 
+LEARNING: dict[str, Any] = {"decay": 0.3, "bound": 2.0, "gain": 1.5}
+FEW = Plastic(hidden=2, coefficients="connection", activity="winner", **LEARNING)
+
+
 @pytest.mark.parametrize(
-    ("hidden", "coefficients", "activity"),
-    [
-        (2, "connection", "winner"),
-        (12, "layer", "graded"),
-        pytest.param(12, "connection", "graded", marks=pytest.mark.slow),
-        pytest.param(2, "layer", "winner", marks=pytest.mark.slow),
-    ],
+    "brain",
+    [FEW, Plastic(hidden=12, coefficients="layer", activity="graded", **LEARNING)],
+    ids=["few", "many"],
 )
-def test_the_plastic_brain_follows_its_formula(
-    hidden: int, coefficients: Any, activity: Any
-) -> None:
+def test_the_plastic_brain_follows_its_formula(brain: Plastic) -> None:
     """All fast weights are 0 at birth, and some reach the bound."""
-    brain = Plastic(
-        hidden=hidden, coefficients=coefficients, activity=activity, decay=0.3, bound=2.0, gain=1.5
-    )
+    hidden = brain.hidden
     g, senses, memories, outputs = thought(brain, ticks=6)
     slow = rows(g["output"], hidden)
     a, b, c, d, rate = (rows(g[name], hidden) for name in COEFFICIENTS)
@@ -142,7 +138,11 @@ def test_the_plastic_brain_follows_its_formula(
         x, h = now, np.tanh(1.5 * times(g["input"], now))
         y = np.einsum("nha,nh->na", slow + fast, h)
         np.testing.assert_allclose(output, y, atol=1e-3)
-        p = np.tanh(y) if activity == "graded" else np.where(y == y.max(axis=1)[:, None], 1, -1)
+        p = (
+            np.tanh(y)
+            if brain.activity == "graded"
+            else np.where(y == y.max(axis=1)[:, None], 1, -1)
+        )
         kept = memory[:, SENSES + hidden + OUTPUTS :].reshape(g["output"].shape)
         np.testing.assert_allclose(rows(kept, hidden), fast, atol=1e-3)
         (shown,) = brain.pictured(memory, SENSES, OUTPUTS).values()
@@ -150,30 +150,28 @@ def test_the_plastic_brain_follows_its_formula(
     assert (np.abs(fast) == 2).mean() > 0.05
 
 
-@pytest.mark.parametrize("hidden", [HIDDEN, 2])
-def test_learning_costs_energy_for_each_change_of_a_fast_weight(hidden: int) -> None:
+def test_learning_costs_energy_for_each_change_of_a_fast_weight() -> None:
     """The last numbers of a memory are the fast weights."""
-    brain = Plastic(hidden=hidden, gain=1.0, price=0.25)
-    *_, memories, _ = thought(brain)
-    size = hidden * OUTPUTS
+    *_, memories, _ = thought(FEW, ticks=6)
+    size = 2 * OUTPUTS
+    spent: Any = jax.jit(FEW.model_copy(update={"price": 0.25}).spent, static_argnums=(2, 3))
     for before, after in pairwise(memories):
-        found = brain.spent(before, after, SENSES, OUTPUTS)
+        found = spent(before, after, SENSES, OUTPUTS)
         change = np.abs(after[:, -size:] - before[:, -size:]).sum(axis=1)
         np.testing.assert_allclose(found, 0.25 * change, rtol=1e-5)
-    assert Plastic(hidden=hidden).spent(before, after, SENSES, OUTPUTS) is None
+    assert FEW.spent(before, after, SENSES, OUTPUTS) is None
 
 
-@pytest.mark.parametrize("hidden", [HIDDEN, 2])
-def test_children_inherit_fast_weights_and_nothing_else(hidden: int) -> None:
-    brain, size = Plastic(hidden=hidden, gain=1.0, inherited=True), hidden * OUTPUTS
-    *_, memories, _ = thought(brain)
-    found = brain.passed_on(jnp.asarray(memories[-1]), SENSES, OUTPUTS)
-    assert found is not None
+def test_children_inherit_fast_weights_and_nothing_else() -> None:
+    *_, memories, _ = thought(FEW, ticks=6)
+    size, heir = 2 * OUTPUTS, FEW.model_copy(update={"inherited": True})
+    passed_on: Any = jax.jit(heir.passed_on, static_argnums=(1, 2))
+    found = passed_on(memories[-1], SENSES, OUTPUTS)
     assert memories[-1][:, :-size].all()
     assert not found[:, :-size].any()
     np.testing.assert_array_equal(found[:, -size:], memories[-1][:, -size:])
-    for other in (Plastic(hidden=hidden), Recurrent(hidden=hidden)):
-        assert other.passed_on(jnp.asarray(memories[-1]), SENSES, OUTPUTS) is None
+    for other in (FEW, Recurrent(hidden=2)):
+        assert other.passed_on(memories[-1], SENSES, OUTPUTS) is None
 
 
 def test_a_plastic_brain_with_a_bound_of_0_does_not_learn() -> None:

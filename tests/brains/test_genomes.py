@@ -6,8 +6,6 @@ from pathlib import Path
 import jax
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from safetensors.numpy import load_file, save_file
 
 import primordia
@@ -16,7 +14,6 @@ from primordia.brains.recurrent import Recurrent
 from primordia.config import load
 from primordia.errors import InputError
 from primordia.history.rebuilding import rebuild_all
-from primordia.random.wide import modulo, wide
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from primordia.runs.verify import verify
@@ -29,11 +26,6 @@ SMALL = {"brain": {"hidden": 6}, "hazard": 0.03, "replication": 0.3, "stop": {"t
 
 def some(count: int, seed: int = 0) -> np.ndarray:
     return np.random.default_rng(seed).normal(size=(count, 60)).astype(np.float32)
-
-
-@given(st.integers(0, 2**64 - 1), st.integers(0, 2**64 - 1), st.integers(1, genomes.MOST_ANCESTORS))
-def test_founders_take_ancestors_in_turn(seed: int, number: int, count: int) -> None:
-    assert int(modulo(wide(seed) + wide(number), count)) == (seed + number) % 2**64 % count
 
 
 ANCESTORS = some(3)

@@ -43,6 +43,6 @@ def test_a_body_does_not_depend_on_the_number_of_births_in_its_tick() -> None:
     words = np.random.default_rng(3).integers(0, 2**32, (64, 2), np.uint32)
     born = jit(Slope().reset)
     together = np.asarray(born(words))
-    for count in (1, 2, 3, 8):
+    for count in (1, 3):
         some = [np.asarray(born(words[i : i + count])) for i in range(0, 48, count)]
         np.testing.assert_array_equal(np.concatenate(some), together[:48])

@@ -39,7 +39,12 @@ def test_a_numpy_habitat_is_exact_in_chunks_of_any_length() -> None:
 
 
 @pytest.mark.parametrize(
-    ("habitat", "kind"), [(CartPole(), "recurrent"), (Mill(), "feed-forward"), (Mill(), "gated")]
+    ("habitat", "kind"),
+    [
+        (CartPole(), "recurrent"),
+        pytest.param(Mill(), "feed-forward", marks=pytest.mark.slow),
+        (Mill(), "gated"),
+    ],
 )
 def test_brains_and_bodies_do_not_depend_on_their_number(kind: str, habitat) -> None:
     """One pole balancer is enough: `matvec` is the same for all brains."""

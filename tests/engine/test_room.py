@@ -1,7 +1,6 @@
 """Promise 2 when lists are full: whatever happens in one tick, no birth, death or sample is lost."""
 
 from functools import partial
-from itertools import product
 
 import jax
 import jax.numpy as jnp
@@ -44,13 +43,14 @@ def test_full_lists_lose_nothing(habitat: str) -> None:
         assert metrics["births"][sampled].tolist() == expected.tolist()
 
 
-PAIRS = [("births", 8), ("deaths", 701), ("samples", 8)]
-OTHER_PAIRS = [pair for pair in product(LISTS, (8, 701)) if pair not in PAIRS]
+PAIRS = [(name, 8) for name in LISTS]
+LARGE = [pytest.param(name, 701, marks=pytest.mark.slow) for name in LISTS]
+"""`tests/law/test_events.py` has such batches."""
 
 
 @pytest.mark.parametrize(
     ("which", "cells"),
-    [*PAIRS, *(pytest.param(*pair, marks=pytest.mark.slow) for pair in OTHER_PAIRS)],
+    [*PAIRS, *LARGE],
 )
 def test_the_fullest_tick_fits_whenever_lists_have_room(which: str, cells: int) -> None:
     """Cells are written one at a time in small worlds, and in batches, the last padded, in large ones."""

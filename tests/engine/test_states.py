@@ -3,6 +3,7 @@
 from types import SimpleNamespace
 from typing import Any
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -27,9 +28,10 @@ def test_a_world_stops_exactly_at_any_of_its_limits() -> None:
     )
     limits = Limits(wide([10, 10, 10, 2**32 + 10] + [99] * 4), wide([7] * 8), jnp.bool_(False))
     until_limits = [True, False, False, True, True, False, False, True]
-    assert np.asarray(running(worlds, limits)).tolist() == until_limits
+    runs = jax.jit(lambda limits: running(worlds, limits))
+    assert runs(limits).tolist() == until_limits
     saturation = limits._replace(saturation=jnp.bool_(True))
-    assert np.asarray(running(worlds, saturation)).tolist() == [*until_limits[:7], False]
+    assert runs(saturation).tolist() == [*until_limits[:7], False]
 
 
 @pytest.mark.parametrize(

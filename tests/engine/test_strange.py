@@ -8,25 +8,32 @@ import os
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
 import primordia
 from primordia.history.pedigree import genomes
+from primordia.history.rebuilding import descent
 from primordia.history.summary import summary
+from primordia.law.world import Cause
 from primordia.organism.playing.evaluation import evaluate
+from primordia.organism.reliving.compare import relive
+from primordia.organism.reliving.course import Course, recorded
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import loop
 from primordia.runs.archive import Archive
+from primordia.runs.digest import digests as digests_of
 from tests import commands
 from tests.goldens import POLES
 from tests.history.test_rebuilding import assert_rebuilt
 from tests.strange import BLOCKS, GIVING, PASSING, QUIET, SEEDS, STRANGE, STRANGER, TICKS
 from tests.test_goldens import assert_lived_as_it_did
-from tests.worlds import MILLS, Lived, config
+from tests.worlds import HERD, MILLS, Lived, config
 
 WORLDS = {
     "strange": STRANGE,
@@ -40,7 +47,9 @@ FURTHER = [pytest.param(name, marks=pytest.mark.slow) for name in WORLDS if name
 
 def on_host(settings: dict[str, Any], habitat: str) -> dict[str, Any]:
     """Return the settings of the same worlds in a habitat on the host."""
-    return {**settings, "habitat": {"name": f"tests.toys:{habitat}", "inner": "mill"}}
+    inner = settings["habitat"]["name"].removeprefix("tests.toys:").lower()
+    name = f"tests.toys:{habitat}"
+    return {**settings, "habitat": {**settings["habitat"], "name": name, "inner": inner}}
 
 
 @pytest.fixture(scope="module", params=["passing", *FURTHER])
@@ -75,15 +84,17 @@ def run(settings: dict[str, Any], tmp_path_factory: pytest.TempPathFactory) -> P
 
 
 @pytest.fixture(
-    scope="module", params=["mills", *(pytest.param(w, marks=pytest.mark.slow) for w in WORLDS)]
+    scope="module",
+    params=["herd", *(pytest.param(w, marks=pytest.mark.slow) for w in ("mills", *WORLDS))],
 )
 def twins(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> tuple[Lived, Path]:
     """The same worlds in JAX, and in a habitat on the host that tallies the ticks of each life."""
-    settings = {"mills": MILLS, **WORLDS}[request.param]
+    settings = {"herd": HERD, "mills": MILLS, **WORLDS}[request.param]
     path = tmp_path_factory.mktemp("clocked") / "run"
-    live_in_parts(on_host(settings, "Clocked"), path)
+    loop.start(config(on_host(settings, "Clocked"), stop={"ticks": 99}), path)
+    loop.resume(path, {"ticks": TICKS})
     return Lived(config(settings), TICKS), path
 
 
@@ -94,6 +105,13 @@ def clocked(twins: tuple[Lived, Path]) -> Path:
 
 def digests(run: Path) -> list[str]:
     return [world["digest"] for world in primordia.load(run).info()["worlds"]]
+
+
+def assert_lived_alike(run: Archive, fork: Archive) -> None:
+    """Two runs have the same state at their ends. What a fork inherited is not in its records."""
+    one, other = (digests_of({}, each.state, 2, each.config.islands) for each in (run, fork))
+    assert one == other
+    assert len(set(one)) == 2
 
 
 def test_the_worlds_are_strange_enough(settings: dict[str, Any], whole: Lived) -> None:
@@ -156,7 +174,7 @@ def test_a_run_that_was_stopped_goes_on_as_if_it_had_not_been(
     assert_rebuilt(run)
 
 
-@pytest.mark.parametrize("habitat", ["Mill", "Clocked"])
+@pytest.mark.parametrize("habitat", ["Mill", pytest.param("Clocked", marks=pytest.mark.slow)])
 def test_worlds_that_stop_early_do_not_change_the_others(
     settings: dict[str, Any], habitat: str
 ) -> None:
@@ -171,7 +189,7 @@ def test_worlds_that_stop_early_do_not_change_the_others(
 
 
 def test_a_habitat_on_the_host_lives_under_the_same_law(twins: tuple[Lived, Path]) -> None:
-    """In chunks and parts of other lengths. What the habitat tallies is no part of the law."""
+    """In two parts. What the habitat tallies is no part of the law."""
     whole, clocked = twins
     run = primordia.load(clocked)
     for name in ("births", "deaths", "metrics"):
@@ -185,7 +203,6 @@ def test_a_habitat_on_the_host_lives_under_the_same_law(twins: tuple[Lived, Path
     for name in b:
         if name.startswith("world.organisms"):
             np.testing.assert_array_equal(a[name][alive], b[name][alive], err_msg=name)
-    assert run.verify() == []
 
 
 def test_deaths_record_the_tallies_at_death(clocked: Path) -> None:
@@ -219,10 +236,16 @@ def test_a_fork_keeps_what_lived(run: Path, tmp_path: Path) -> None:
     same = primordia.load(run).fork(150, tmp_path / "same", stop={"ticks": TICKS})
     other = same.fork(180, tmp_path / "other", seed=9, stop={"ticks": QUIET})
     assert other.verify() == []
-    assert_rebuilt(same.path)
     assert_rebuilt(other.path)
-    ages = [Archive(each).state["world.organisms.born.lo"] for each in (run, same.path)]
-    np.testing.assert_array_equal(*ages)
+    opened = Archive(same.path)
+    lives, born = opened.lives, "world.organisms.born.lo"
+    np.testing.assert_array_equal(opened.state[born], Archive(run).state[born])
+    rows = np.flatnonzero((generations(opened) > 1) & (lives.born > 150) & (lives.lifespan > 0))
+    pairs = [(int(lives.id[row]), int(lives.world[row])) for row in rows]
+    older = [pair for pair in pairs if lives.inherited[descent(lives, *pair)[0]]]
+    assert len(older) > 5
+    for pair in (older[0], older[-1]):
+        assert relive(opened, *pair).agrees, "its line was alive at the fork"
 
 
 def test_a_shadow_has_the_recorded_notes_and_other_weights(run: Path) -> None:
@@ -233,6 +256,64 @@ def test_a_shadow_has_the_recorded_notes_and_other_weights(run: Path) -> None:
     assert (recorded != redrawn).any(axis=1).all()
     assert np.isfinite(redrawn).all()
     assert redrawn.tobytes() == genomes(opened, rows, redrawn=True).tobytes()
+
+
+def generations(run: Archive) -> np.ndarray:
+    """Return the number of ancestors of each organism up to its founder, or to the fork, (L,)."""
+    lives, found = run.lives, np.zeros(len(run.lives), int)
+    for row in np.argsort(lives.born, kind="stable"):
+        if lives.parent_row[row] >= 0:
+            found[row] = found[lives.parent_row[row]] + 1
+    return found
+
+
+def first_of(generation: np.ndarray, which: np.ndarray) -> int:
+    """Return the row with the fewest ancestors, all of which live again."""
+    (rows,) = which.nonzero()
+    return int(rows[generation[rows].argmin()])
+
+
+def life(run: Archive, row: int) -> RelivedLife:
+    return RelivedLife.of(run, int(run.lives.id[row]), int(run.lives.world[row]))
+
+
+PASSING_ALONE = pytest.mark.parametrize("settings", ["passing"], indirect=True)
+
+
+@PASSING_ALONE
+def test_late_descendants_live_again_as_recorded(run: Path) -> None:
+    """They die again in the recorded way, or reach the body, the energy and the memory on record."""
+    opened = Archive(run)
+    lives, generation = opened.lives, generations(opened)
+    parents = lives.parent_row[lives.parent_row >= 0]
+    replaced = np.isin(np.arange(len(lives)), parents[lives.cause[parents] == Cause.REPLACED])
+    of_replaced = replaced[np.maximum(lives.parent_row, 0)] & (lives.parent_row >= 0)
+    for each in (
+        ~lives.died,
+        lives.cause == Cause.STARVED,
+        lives.cause == Cause.FATAL,
+        of_replaced,
+    ):
+        row = first_of(generation, each & (generation > 3) & (lives.lifespan > 0))
+        found = relive(opened, int(lives.id[row]), int(lives.world[row]))
+        assert found.agrees, found
+        assert found.begin == "birth"
+
+
+@PASSING_ALONE
+def test_a_life_that_begins_without_the_memory_of_its_parent_differs(run: Path) -> None:
+    """A founder begins with nothing."""
+    opened = Archive(run)
+    lives = opened.lives
+    assert not life(opened, np.flatnonzero(lives.parent < 0)[-1]).memory.any()
+    right = life(
+        opened,
+        first_of(generations(opened), ~lives.died & (lives.parent >= 0) & (lives.lifespan > 3)),
+    )
+    assert right.memory.any()
+    wrong = replace(right, first=jnp.zeros_like(right.memory))
+    list((course := Course(wrong)).stretches())
+    assert course.found()["memory"] != recorded(wrong)["memory"]
 
 
 @pytest.mark.slow
@@ -281,7 +362,8 @@ ENVIRONMENT = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", ["poles", pytest.param("strange", marks=pytest.mark.slow)])
+@pytest.mark.slow  # `test_goldens.py` has worlds that lived in other environments
+@pytest.mark.parametrize("name", ["poles", "strange"])
 def test_a_world_is_the_same_beside_another_on_one_thread_and_in_any_environment(
     name: str, tmp_path: Path
 ) -> None:

@@ -17,15 +17,15 @@ from primordia.history import traits as history
 from primordia.history.series import spaced
 from primordia.history.summary import summary
 from primordia.history.traits import EACH, course, factors_of
-from primordia.organism.playing.games import lifespans, lifespans_in_games
-from primordia.organism.playing.players import players_of
+from primordia.organism.playing.games import lifespans_in_games
 from primordia.organism.reliving.compare import relive
 from primordia.phylogeny.table import ids
 from primordia.report.content import view
 from primordia.report.curves import panels
+from primordia.runs import loop
 from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
-from tests.engine.test_strange import digests, live_in_parts
+from tests.engine.test_strange import assert_lived_alike
 from tests.history.test_rebuilding import assert_rebuilt
 from tests.strange import TICKS
 from tests.worlds import Lived, config
@@ -60,7 +60,7 @@ POLES: dict[str, Any] = {
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("traits") / "run"
-    live_in_parts(POLES, path)
+    loop.start(config(POLES, stop={"ticks": TICKS}), path)
     return path
 
 
@@ -73,19 +73,19 @@ def fork(run: Path, tmp_path_factory: pytest.TempPathFactory) -> primordia.Run:
 
 @pytest.fixture(scope="module")
 def lived() -> Lived:
-    return Lived(config(POLES), TICKS, chunk=11)
+    return Lived(config(POLES), 100)
 
 
-def test_parts_and_chunks_of_any_length_make_the_same_run(run: Path, lived: Lived) -> None:
-    assert digests(run) == lived.digests()
-    assert primordia.load(run).verify() == []
-    assert_rebuilt(run)
+def test_a_fork_without_a_change_is_the_same_run(run: Path, fork: primordia.Run) -> None:
+    """Bodies, memories and genomes go on from a checkpoint in the middle of their lives."""
+    assert_lived_alike(Archive(run), fork.opened())
+    assert_rebuilt(fork.path)
 
 
 @pytest.mark.slow
 def test_a_habitat_on_the_host_lives_the_same_lives(lived: Lived) -> None:
     held = {**POLES["habitat"], "name": "tests.habitats.test_parameters:HeldPoles"}
-    hosted = Lived(config({**POLES, "habitat": held}), TICKS)
+    hosted = Lived(config({**POLES, "habitat": held}), 100)
     for name in ("births", "deaths", "metrics"):
         mine, other = lived.table(name), hosted.table(name)
         for column, values in mine.items():
@@ -108,16 +108,18 @@ def _assert_reborn_with_their_traits(lived: Lived) -> None:
 
 
 def test_the_living_and_the_dead_live_again_in_their_bodies(run: Path, fork: primordia.Run) -> None:
+    """On the moon, where gravity is 0.3 times that of the body."""
     opened, forked = Archive(run), Archive(fork.path)
-    for died in (True, False):
-        rows = np.flatnonzero(opened.lives.died == died)
-        assert len(rows) > 5
-        for row in rows[-3:]:
-            life = relive(opened, int(opened.lives.id[row]), int(opened.lives.world[row]))
+    moon = opened.config.islands.sizes[0]
+    chosen = [(opened, opened.lives.died == died) for died in (True, False)]
+    chosen += [(forked, forked.lives.inherited & (forked.lives.ended > 200))]
+    for source, which in chosen:
+        lives = source.lives
+        rows = np.flatnonzero(which & (lives.cell < moon) & (lives.lifespan > 2))
+        assert len(rows) > 1
+        for row in rows[-2:]:
+            life = relive(source, int(lives.id[row]), int(lives.world[row]))
             assert life.agrees, life.respects
-    lives = forked.lives
-    row = np.flatnonzero(lives.inherited & (lives.ended > 200))[-1]
-    assert relive(forked, int(lives.id[row]), int(lives.world[row])).agrees
 
 
 def test_bodies_are_what_the_genes_of_the_living_say(lived: Lived) -> None:
@@ -128,16 +130,6 @@ def test_bodies_are_what_the_genes_of_the_living_say(lived: Lived) -> None:
     bodies = joined([island.inner.traits for island in parts.island], parts.sizes)
     np.testing.assert_array_equal(np.asarray(bodies)[alive], factors[alive])
     assert len(np.unique(factors, axis=0)) > 10
-
-
-def test_games_are_played_in_the_bodies_of_the_players(run: Path) -> None:
-    """Of equal brains, those with other bodies live other lives."""
-    opened = Archive(run)
-    players = players_of(opened, [(int(opened.lives.of_world(0).id[-1]), 0)] * 4)
-    genomes = np.repeat(players.genomes[:1], 4, axis=0)
-    genomes[:, -2:] = [[-2, -1], [0, 0], [2, 0], [2, 1]]
-    lives = lifespans(players._replace(genomes=genomes), 300)
-    assert len(set(lives.tolist())) > 1
 
 
 def test_the_loss_of_an_inherited_body_has_its_name(run: Path) -> None:
@@ -155,10 +147,15 @@ def test_brains_and_bodies_of_a_line_live_apart(run: Path) -> None:
     assert last.brain == last.body == last.reborn
     own, other = (loaded.organism(each.organism, 1).genome() for each in (first, last))
     assert (own[-2:] != other[-2:]).all(), "the line's body has changed"
-    players = of_run(loaded.opened(), [(champion.id, 1)]).players.take(np.zeros(2, int))
-    genomes = np.array([np.append(own[:-2], other[-2:]), np.append(other[:-2], own[-2:])])
+    players = of_run(loaded.opened(), [(champion.id, 1)]).players.take(np.zeros(6, int))
+    bodies = (other[-2:], own[-2:], [-2, -1], [0, 0], [2, 0], [2, 1])
+    brains = (own[:-2], *[other[:-2]] * 5)
+    genomes = np.array([np.append(*each) for each in zip(brains, bodies, strict=True)], np.float32)
     lived = lifespans_in_games(players._replace(genomes=genomes), 1, 300).mean(axis=1)
-    assert [first.brain, first.body] == lived.tolist()
+    assert [first.brain, first.body] == lived[:2].tolist()
+    assert len(set(lived[2:].tolist())) > 1, (
+        "of equal brains, those with other bodies live otherwise"
+    )
 
 
 def test_traits_of_the_living_are_in_the_summary(run: Path) -> None:

@@ -1,21 +1,29 @@
-"""Worlds with food for all, in which each mutant's mutations have a size of their own."""
+"""Worlds with food for all, whose organisms choose when to copy themselves. Mutants have a note."""
 
 from typing import Any
 
 from tests.worlds import MEADOW
 
-FOOD = 0.25
+FOOD = 2.0
+RICH = 200
+"""The last tick in which a unit of food is a unit of energy. Then it is four."""
 FED: dict[str, Any] = {
     **MEADOW,
-    "habitat": {"name": "tests.toys:Meadow", "lifespan": 60, "food": FOOD},
-    "metabolism": {"store": 30.0, "drain": 1.0, "gain": 2.0},
-    "seasons": [{"kind": "schedule", "setting": "metabolism.gain", "at": 200, "value": 8.0}],
-    "brain": {"hidden": 6},
-    "mutation": {"kind": "examples.mutation:SelfAdaptive"},
-    "hazard": 1e-9,
+    "habitat": {"name": "tests.toys:Meadow", "food": FOOD, "lifespan": 150},
+    "brain": {"kind": "linear", "interoception": True},
+    "replication": {"kind": "act", "price": 0.75},
+    "placement": {"topology": "torus4"},
+    "metabolism": {"store": 16.0, "cap": 40.0},
+    "seasons": [{"kind": "schedule", "setting": "metabolism.gain", "at": RICH, "value": 4.0}],
+    "mutation": {
+        "kind": "examples.mutation:SelfAdaptive",
+        "founder_scale": 1.0,
+        "probability": 0.5,
+        "scale": 0.3,
+    },
+    "genesis": "fill",
+    "hazard": 0.01,
     "seeds": 2,
-    "replication": 0.1,
     "sample_every": 40,
-    "stop": {"ticks": 400, "until": "none"},
 }
-"""All gather the same food, which is enough from tick 200 on. A birth has a note of its mutation."""
+"""All gather the same food. A birth has a note of its mutation."""

@@ -23,15 +23,15 @@ from primordia.runs.archive import Archive
 from primordia.runs.records import Records
 from primordia.settings.islands import Islands
 from tests.commands import here
-from tests.history.larders import FED, FOOD
+from tests.history.larders import FED, FOOD, RICH
 from tests.worlds import config
 
 
 @pytest.fixture(scope="module")
 def fed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Make a run with the same food for all, which is enough from tick 200 on."""
+    """Make a run with the same food for all, which is worth more from tick 200 on."""
     run = tmp_path_factory.mktemp("foraging") / "fed"
-    loop.start(config(FED), run)
+    loop.start(config(FED, stop={"ticks": 400}), run)
     return run
 
 
@@ -40,7 +40,7 @@ def test_all_gather_the_food_there_is_and_seasons_move_the_break_even(fed: Path)
     assert gathered.food.shape == gathered.break_even.shape == (2, len(gathered.middle))
     assert len(gathered.middle) >= 400 // FED["sample_every"]
     np.testing.assert_allclose(gathered.food, FOOD)
-    expected = np.where(gathered.middle <= 200, 1 / 2, 1 / 8)
+    expected = np.where(gathered.middle <= RICH, 1, 1 / 4)
     np.testing.assert_allclose(gathered.break_even, [expected] * 2)
 
 

@@ -13,21 +13,12 @@ from primordia.runs.archive import Archive
 from tests.history.larders import FED
 from tests.worlds import config
 
-NOTED = {
-    **FED,
-    "hazard": 0.03,
-    "replication": 0.3,
-    "metabolism": {**FED["metabolism"], "store": 1e6},
-    "stop": {"ticks": 300},
-}
-"""The worlds of `larders`, in which none starves."""
-
 
 @pytest.fixture(scope="module")
 def noted(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Make a run whose mutation keeps a number with each birth."""
     run = tmp_path_factory.mktemp("noted") / "run"
-    loop.start(config(NOTED), run)
+    loop.start(config(FED, stop={"ticks": 300}), run)
     return run
 
 

@@ -5,8 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from tests.chronicle import History
-from tests.worlds import CLOCKWORK, RING, Lived, config
+from tests.worlds import CLOCKWORK, Lived, config
 
 SHORTLY_BEFORE_2_32 = (2**32 - 50, 2**32 - 100)
 BEGINNINGS = [SHORTLY_BEFORE_2_32, (2**62, 2**52)]
@@ -52,20 +51,3 @@ def test_samples_are_at_the_same_multiples(start: tuple[int, int]) -> None:
             "deaths_starved": lived // 31 * 16,
         }.items():
             np.testing.assert_array_equal(metrics[name][in_world], values, name)
-
-
-def test_late_worlds_keep_the_rules_of_every_world() -> None:
-    """Random draws differ, since ticks do; the rules are the same."""
-    start = SHORTLY_BEFORE_2_32
-    run = Lived(config(RING), start[0] + 1, start=start)
-    run.change({"replication": 0.2, "hazard": 0.09})
-    run.advance_to(start[0] + 500)
-    worlds = [History(run, world, start) for world in range(4)]
-    for history in worlds:
-        assert history.lives[0].born == start[0]
-        assert history.now == start[0] + 500
-        assert start[1] + len(history.lives) > 2**32
-        then, state = history.fixation(), run.engine.state.world.worlds.fixed
-        fixed = int(state.hi[history.world]) << 32 | int(state.lo[history.world])
-        assert fixed == (2**64 - 1 if then is None else then[0])
-    assert len({tuple(life.cell for life in history.lives[:9]) for history in worlds}) == 4

@@ -12,7 +12,7 @@ from tests.worlds import RING, Lived, config
 
 @pytest.fixture(scope="module")
 def calm() -> list[History]:
-    run = Lived(config(RING), 3000)
+    run = Lived(config(RING), 1500)
     return [History(run, world) for world in range(4)]
 
 
@@ -37,7 +37,7 @@ def prefix(table: dict[str, np.ndarray], world: int, last: int) -> dict[str, lis
 def test_each_world_stops_in_the_tick_of_its_limit(
     calm: list[History], stop: dict[str, Any]
 ) -> None:
-    run = Lived(config(RING), 3000, **stop)
+    run = Lived(config(RING), 1500, **stop)
     worlds = run.engine.state.world.worlds
     for world, history in enumerate(calm):
         last = history.lives[19].born if "births" in stop else history.saturation()[0]
@@ -45,6 +45,6 @@ def test_each_world_stops_in_the_tick_of_its_limit(
         History(run, world)
         for name in ("births", "deaths"):
             free = prefix(history.lived.table(name), world, last)
-            stopped = prefix(run.table(name), world, 3000)
+            stopped = prefix(run.table(name), world, 1500)
             np.testing.assert_equal(stopped, free)
     assert len(set(to_host(worlds.tick).tolist())) > 1

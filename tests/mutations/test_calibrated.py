@@ -8,6 +8,7 @@ import pytest
 from jax import Array
 
 from primordia.brains.layout import Layout
+from primordia.compiled import shared
 from primordia.mutations.blocks import FounderBlock
 from primordia.mutations.calibrated import Calibrated
 from primordia.mutations.contract import Change, Family
@@ -67,13 +68,13 @@ def test_a_length_is_the_largest_that_changes_no_more_than_allowed(
 
 
 def test_where_nothing_or_everything_is_allowed_the_scale_ends() -> None:
-    mutation = Calibrated(probability=1.0)
+    mutation = Calibrated(probability=1.0, founder_scale=0.3)
     found = noted(mutation, LAYOUT, family(mutation), extremes)
     np.testing.assert_array_equal(found, np.resize([SHORTEST, SHORTEST, 0], K))
 
 
 def test_copies_have_the_parents_genome_and_no_length() -> None:
-    mutation = Calibrated(probability=0.5, founder_scale=0.1)
+    mutation = Calibrated(probability=0.5, founder_scale=0.3)
     of = family(mutation)
     quarters = noted(mutation, LAYOUT, of, distance)
     children, mutants = inherited(mutation, LAYOUT, of._replace(notes=quarters[:, None]))
@@ -94,9 +95,10 @@ def test_noise_has_the_proportions_of_founders() -> None:
     notes = np.full((K, 1), -8, np.int32)
     noise = inherited(mutation, LAYOUT, of._replace(notes=notes))[0] * 4
     one = of.draws.streams.replaced(of.draws.streams[Purpose.NOISE], Purpose.FOUNDER)
-    founders = mutation.founders(LAYOUT, of.draws._replace(streams=one))
+    draws = of.draws._replace(streams=one)
+    founders = np.asarray(shared(Calibrated.founders, mutation, LAYOUT)(draws))
     np.testing.assert_allclose(noise, founders, rtol=1e-6)
-    assert np.asarray(founders)[:, :21].std() > 5 * np.asarray(founders)[:, 21:].std()
+    assert founders[:, :21].std() > 5 * founders[:, 21:].std()
 
 
 def test_lengths_double_with_every_fourth_step() -> None:

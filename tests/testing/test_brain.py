@@ -9,7 +9,6 @@ from pydantic import Field
 from primordia.brains.contract import Brain, Genome
 from primordia.brains.layers import matvec
 from primordia.brains.layout import Shape
-from primordia.brains.linear import Linear
 from primordia.testing import ContractError, check_brain
 from tests.testing.impure import counted
 
@@ -99,7 +98,7 @@ class Growing(Plain):
         return {"w": (outputs, senses), "more": (counted(),)}
 
 
-class Listed(Plain):
+class Listed(Fused):
     widths: list[int] = Field([3])
 
 
@@ -124,16 +123,12 @@ def test_a_brain_with_a_fault(brain: Brain, says: str) -> None:
         check_brain(brain)
 
 
-def test_products_that_are_added_are_no_fault() -> None:
-    check_brain(Fused())
+def test_products_that_are_added_are_no_fault_and_nothing_is_said_of_what_is_well() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        check_brain(Fused())
 
 
 def test_what_is_compiled_for_each_run_is_warned_of() -> None:
     with pytest.warns(UserWarning, match="Listed is not hashed by its values, .* define __hash__"):
         check_brain(Listed())
-
-
-def test_nothing_is_said_of_what_is_well() -> None:
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        check_brain(Linear())

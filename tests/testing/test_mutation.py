@@ -130,11 +130,6 @@ class Ranked(Counted):
         return jnp.arange(count, dtype=jnp.int32)[:, None]
 
 
-class Neighbourly(Counted):
-    def note(self, layout: Layout, family: Family, change: Change | None) -> Array:
-        return jnp.cumsum(family.notes, axis=0) + 1
-
-
 class Open(Steady):
     def governed(self, setting: str, layout: Layout) -> list[str]:
         return ["scale"]
@@ -162,11 +157,6 @@ class Misled(Steady):
         return {"scale": ["scale"], "size_of_blocks": ["size"]}.get(setting, [])
 
 
-class Few(Steady):
-    def founders(self, layout: Layout, draws: Draws) -> Array:
-        return super().founders(layout, draws)[:, 1:]
-
-
 def test_products_that_are_added_are_no_fault() -> None:
     check_mutation(Contracted())
 
@@ -184,15 +174,10 @@ def test_products_that_are_added_are_no_fault() -> None:
         (Clustered(), "organism 31 when 1 instead of 32 are born together"),
         (Real(), r"gives notes as float32 \(32, 1\); the contract says int32 \(32, 1\)"),
         (Ranked(), "gives founders different notes"),
-        (Neighbourly(), "instead of 32 are born together"),
         (Open(), "a season of a setting that the mutation does not have; return"),
         (Closed(), "has a rate scale that no season of scale changes"),
         (Elsewhere(), "a season of .* changes .*size.*, which `rates` lacks"),
         (Misled(), "a season of size_of_blocks changes size, which `rates` lacks"),
-        (
-            Few(),
-            r"gives genomes of founders as float32 \(32, 83\); the contract says .* \(32, 84\)",
-        ),
     ],
     ids=lambda each: type(each).__name__ if isinstance(each, Mutation) else "",
 )
