@@ -54,9 +54,9 @@ def test_where_death_ignores_the_genome_nothing_is_inherited(run: primordia.Run)
 def test_assays_of_lives_tell_what_python_returns(
     name: str, poles: primordia.Run, tmp_path: Path
 ) -> None:
-    options = ["--games", 1, "--ticks", 60, "--out", tmp_path]
+    options = ["--games", 1, "--ticks", 60]
     options += {"effects": ["--mutants", 30, "--scale", 0.1], "garden": ["--each", 2]}.get(name, [])
-    told = here("assay", name, poles.path, *options, "--json")
+    told = here("assay", name, poles.path, *options, "--out", tmp_path, "--json")
     assert told.returncode == 0, told.stderr
     run, subjects = poles.opened(), of_run(poles.opened())
     champion = poles.oldest()
@@ -68,7 +68,7 @@ def test_assays_of_lives_tell_what_python_returns(
     }[name]()
     assert json.loads(told.stdout) == {str(poles.path): [each.to_dict() for each in expected]}
     assert (tmp_path / f"{name}.png").stat().st_size > 2000
-    table = here("assay", name, poles.path, *options[:4])
+    table = here("assay", name, poles.path, *options)
     assert str(poles.path) in table.stdout
 
 

@@ -98,7 +98,7 @@ def test_without_fast_weights_the_past_is_that_of_the_outputs(learners: Path) ->
     born = RelivedLife.of(archive, int(archive.lives.id[rows[0]]))
     life = replace(born, law=replace(born.law, brain=Plastic(hidden=3, bound=0.0)))
     panels = Panels(life, [range(1, 6)], 5)
-    panels.follow(next(life.stretches()))
+    panels.follow(next(born.stretches()))
     assert panels._shown == {}
     np.testing.assert_array_equal(panels._pasts[0]._rows, squashed(panels._output[:5]).T)
 
