@@ -55,7 +55,7 @@ PLAYED = {f"{name}.toml" for name in (
     "acrobot_survival", "cartpole_survival_hidden", "lunarlander_survival", "mountaincar_forager",
     "pong_survival_forager", "reacher_forager_costly",
 )}  # fmt: skip
-"""Tasks of each simulator, with food and effort. Others are slow; those of gymnax take long to compile."""
+"""Tasks of each simulator, with food and effort. Others are slow; those of gymnax compile for long."""
 
 
 @pytest.mark.parametrize("file", marked(((file, None) for file in plays.NAMES), PLAYED))

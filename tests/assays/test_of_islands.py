@@ -103,14 +103,14 @@ def test_games_on_another_island_are_those_of_its_habitat(isles: primordia.Run) 
 def test_assays_of_islands_tell_what_python_returns(
     name: str, isles: primordia.Run, tmp_path: Path
 ) -> None:
-    words: list[Any] = ["--each", 3, "--games", 1, "--ticks", 40]
-    words += ["--most", 4] if name == "generalists" else []
+    words: list[Any] = ["--each", 2, "--games", 1, "--ticks", 40]
+    words += ["--most", 3] if name == "generalists" else []
     told = here("assay", name, isles.path, *words, "--out", tmp_path, "--json")
     assert told.returncode == 0, told.stderr
-    run, manner = isles.opened(), {"each": 3, "games": 1, "ticks": 40}
+    run, manner = isles.opened(), {"each": 2, "games": 1, "ticks": 40}
     found: list[Any] = {
         "transplant": lambda: transplant(run, **manner),
-        "generalists": lambda: generalists(run, **manner, most=4),
+        "generalists": lambda: generalists(run, **manner, most=3),
     }[name]()
     expected = json.loads(json.dumps([each.to_dict() for each in found]))
     assert json.loads(told.stdout) == {str(isles.path): expected}

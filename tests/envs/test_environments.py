@@ -27,13 +27,13 @@ from tests.worlds import HOSTED
 RANDOM = {"senses": (51, 49, 54), "sticky": 0.25, "noops": 30, "frame_skip": 3,
           "food": "ram[51] > 130", "workers": 0}  # fmt: skip
 SMALL: dict[str, Any] = {"cells": 6, "seeds": 2, "genesis": "fill", "hazard": 0.003}
-OWN: dict[str, dict[str, Any]] = {
-    "CartPole-survival": {},
-    "Pong-survival": {"habitat": RANDOM, "metabolism": {"store": 60.0, "gain": 0.75}},
-    "Reacher-forager-costly": {},
-}  # fmt: skip
 RIPPLES = {"food": "0.25", "effort": "abs(obs[1])", "workers": 0}
-"""A pond with food and effort; above, settings of runs, and those of slow tasks."""
+OWN: dict[str, dict[str, Any]] = {
+    "Pong-survival": {**SMALL, "habitat": RANDOM, "metabolism": {"store": 60.0, "gain": 0.75}},
+    "Reacher-forager-costly": SMALL,
+    "gym:tests.ponds:Pond-v0": {**HOSTED, "replication": 0.3, "habitat": RIPPLES},
+}
+"""Settings of slow runs, with food and effort."""
 LONG = 10_000
 """Ticks after which a body should have died, so that a test of deaths ends also without them."""
 SIMULATORS = {"atari": "ale_py", "mujoco": "mujoco", "gymnasium": "Box2D"}
@@ -67,8 +67,8 @@ def test_every_task_is_an_environment_that_gymnasium_accepts(task: str) -> None:
 @pytest.mark.parametrize(
     ("task", "settings"),
     [
-        *(pytest.param(task, SMALL | own, marks=pytest.mark.slow) for task, own in OWN.items()),
-        ("gym:tests.ponds:Pond-v0", {**HOSTED, "replication": 0.3, "habitat": RIPPLES}),
+        ("CartPole-survival", {"cells": 8, "hazard": 0.002}),
+        *(pytest.param(task, own, marks=pytest.mark.slow) for task, own in OWN.items()),
     ],
 )
 def test_a_life_has_the_numbers_that_it_has_in_a_run(
