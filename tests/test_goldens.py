@@ -17,7 +17,7 @@ PLAYS: dict[str, Any] = json.loads(plays.FILE.read_text(encoding="utf-8"))
 SHOWN = {"CartPole-survival", "breakout-random-forager"}
 """Tasks in JAX and on the host, what is drawn at random, and what feeds. Others are slow.
 
-Every other simulator is played below, and laws have seasons.
+Every simulator but the Atari games is played below, and laws have seasons.
 """
 
 
@@ -52,8 +52,8 @@ def test_each_task_has_the_settings_with_which_it_was_played() -> None:
 
 
 PLAYED = {f"{name}.toml" for name in (
-    "acrobot_survival", "cartpole_survival_hidden", "lunarlander_survival", "mountaincar_forager",
-    "pong_survival_forager", "reacher_forager_costly",
+    "cartpole_survival_hidden", "lunarlander_survival", "mountaincar_forager",
+    "reacher_forager_costly",
 )}  # fmt: skip
 """Tasks of each simulator, with food and effort. Others are slow; those of gymnax compile for long."""
 

@@ -68,7 +68,7 @@ def test_shadows_are_those_of_natives(
 
 
 def test_champions_and_founders_of_an_island_are_evaluated_there(isles: primordia.Run) -> None:
-    champion, alive, best, some = isles.standings(20, island="watch", games=1, ticks=60)
+    champion, alive, best, some = isles.standings(6, island="watch", games=1, ticks=60)
     for group in (champion, alive):
         for each in group.evaluations:
             assert home_of(isles, [each.organism], each.world) == {"watch"}
@@ -76,7 +76,7 @@ def test_champions_and_founders_of_an_island_are_evaluated_there(isles: primordi
     native = isles.opened().config.islands.of_cells(lives.cell) == 1
     assert len(alive.evaluations) == (native & ~lives.died).sum()
     most = np.bincount(lives.world[native]).max()
-    assert (champion.chosen_from, best.chosen_from) == (most, min(20, most))
+    assert (champion.chosen_from, best.chosen_from) == (most, min(6, most))
     assert {each.world for each in some.evaluations} == {0, 1}
     assert [each.id for each in isles.champions("watch")] == [
         each.organism for each in champion.evaluations

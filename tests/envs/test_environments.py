@@ -11,14 +11,13 @@ import pytest
 pytest.importorskip("gymnasium")
 
 import gymnasium
-from gymnasium.error import ResetNeeded
 from gymnasium.utils.env_checker import check_env
 from gymnasium.vector import AutoresetMode
 
 import primordia
 import primordia.envs
 from primordia.config import load
-from primordia.envs import Forager, LifeEnv, LifeVectorEnv
+from primordia.envs import LifeEnv, LifeVectorEnv
 from primordia.law.world import Cause
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.settings.tables import tasks
@@ -177,46 +176,6 @@ def test_bodies_that_have_died_do_not_change_until_a_reset() -> None:
         before, over = seen, ended
     assert over.all()
     assert deaths[0] + 9 < deaths[1]
-
-
-def test_a_dying_body_keeps_its_own_senses_while_another_is_born() -> None:
-    """Poles that are always pushed to one side fall in nine or ten ticks. A newborn pole is upright."""
-    many, over, together = LifeVectorEnv("CartPole-survival", 3), np.zeros(3, bool), 0
-    many.reset(seed=2)
-    for _ in range(90):
-        senses, _, ended, _, _ = many.step(np.zeros(3, int))
-        assert (np.abs(senses[ended]).max(axis=1) > 0.2).all()
-        assert (np.abs(senses[over]) < 0.2).all()
-        together += bool(ended.any() and over.any())
-        over = ended
-    assert together > 3
-
-
-def test_a_life_can_be_seen() -> None:
-    env = LifeEnv("CartPole-survival", render_mode="rgb_array")
-    with pytest.raises(ResetNeeded, match="there is no body to see"):
-        env.render()
-    env = gymnasium.make("primordia/CartPole-survival-v0", render_mode="rgb_array")
-    env.reset(seed=0)
-    picture = env.render()
-    assert picture.shape[2] == 3
-    assert len(np.unique(picture)) > 1
-
-
-@pytest.mark.parametrize(("task", "rate"), [("CartPole-survival", 50), ("gym:CartPole-v1", 50)])
-def test_films_of_a_life_have_the_speed_of_its_habitat(task: str, rate: float) -> None:
-    """Gymnasium's recorders read the pictures per second from the metadata."""
-    assert LifeEnv(task).metadata["render_fps"] == pytest.approx(rate)
-    assert LifeEnv.metadata["render_fps"] == 30
-
-
-@pytest.mark.parametrize("food", [np.inf, -np.inf, np.nan])
-def test_food_that_is_not_finite_is_not_eaten(food: float) -> None:
-    meals = iter([2.0, food])
-    env = Forager(gymnasium.make("tests.ponds:Pond-v0", edge=1e9), lambda *_: next(meals))
-    env.reset(seed=0)
-    eaten = [env.step(env.action_space.sample())[-1]["food"] for _ in range(2)]
-    assert eaten == [2, 2]
 
 
 def test_bodies_keep_the_seeds_that_they_were_given() -> None:

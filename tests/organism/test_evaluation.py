@@ -37,7 +37,7 @@ def test_lives_and_whole_games_have_numbers_of_their_own() -> None:
     }  # fmt: skip
 
 
-@pytest.mark.parametrize("senses", ["live", "frozen", "ignored"])
+@pytest.mark.parametrize("senses", ["frozen", "ignored"])
 def test_organisms_play_side_by_side_as_they_play_alone(
     poles: Path, monkeypatch: pytest.MonkeyPatch, senses: Any
 ) -> None:

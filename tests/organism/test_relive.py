@@ -38,7 +38,7 @@ def test_lives_of_each_end_agree_with_the_records(chain: list[Path], number: int
     ends = by_cause(run)
     assert set(ends) >= {-1, Cause.STARVED, Cause.HAZARD, Cause.REPLACED}
     for cause, rows in ends.items():
-        for row in rows[np.linspace(0, len(rows) - 1, 3).astype(int)]:
+        for row in rows[np.linspace(0, len(rows) - 1, 2).astype(int)]:
             found = Organism(run, int(row)).relive()
             assert found.agrees, found
             assert found.ends == run.lives.ended[row]
