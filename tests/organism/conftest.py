@@ -54,7 +54,7 @@ def mill(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def poles(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Make a world of poles, in which an organism lives long."""
     run = tmp_path_factory.mktemp("poles") / "run"
-    stop = {"ticks": 3000, "until": "none"}
+    stop = {"ticks": 6000, "until": "none"}
     return primordia.run("CartPole-survival", run, cells=8, hazard=0.002, seed=3, stop=stop).path
 
 

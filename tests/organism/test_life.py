@@ -139,7 +139,7 @@ def test_an_organism_has_the_properties_that_are_recorded(poles: Path) -> None:
             row["parent"], row["cell"], row["tick"])  # fmt: skip
         died = deaths.get(row["id"])
         assert organism.cause == (died["cause"] if died else None)
-        assert organism.age == (died["tick"] if died else 3000) - row["tick"]
+        assert organism.age == (died["tick"] if died else 6000) - row["tick"]
         line = organism.descent()
         assert line[-1] == organism.id
         assert by_id[line[0]].birth_cause == "founder"
