@@ -12,11 +12,14 @@ from examples.habitat import Pasture
 from examples.mutation import CEILING, FACTORS, FLOOR, SelfAdaptive
 
 import primordia
+from primordia.habitats.on_host import OnHost
+from primordia.organism.policy import Policy
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs.archive import Archive
 from primordia.testing import check_brain, check_habitat, check_mutation
 from tests.commands import here
 from tests.history.test_rebuilding import assert_rebuilt
+from tests.worlds import law_of
 
 TASK = "CartPole-survival"
 SEASON = '{kind = "schedule", setting = "mutation.scale", at = 150, value = 0.02}'
@@ -37,6 +40,7 @@ PARTS: dict[str, Any] = {
     "seasons": f"[{SEASON}]",
 }
 """A world of these parts together."""
+GENOME = np.random.default_rng(3).normal(size=3 * (4 + 3 + 1 + 2)).astype(np.float32)
 
 
 @pytest.mark.slow
@@ -50,6 +54,31 @@ def test_they_keep_their_contracts(part: str) -> None:
     checks[part]()
 
 
+def test_an_own_brain_keeps_a_share_of_its_memory() -> None:
+    policy = Policy(law_of(brain={"kind": "examples.brain:Leaky", "neurons": 3}), GENOME)
+    (w, u, keep, v), memory = policy.weights.values(), np.zeros(3, np.float32)
+    for senses in np.random.default_rng(1).normal(size=(3, 4)).astype(np.float32):
+        share = 1 / (1 + np.exp(-keep))
+        memory = share * memory + (1 - share) * np.tanh(w @ senses + memory @ u)
+        assert policy(senses) == np.argmax(v @ memory)
+        np.testing.assert_allclose(policy.memory, memory, rtol=1e-4, atol=1e-5)
+
+
+def test_an_own_habitat_feeds_who_seeks_tufts_and_kills_who_leaves() -> None:
+    """The first body goes to its tufts, the second goes right."""
+    pasture = OnHost(Pasture(reach=0.2))
+    pasture.open(2)
+    senses, eaten = pasture.reset(np.arange(2), np.array([[7, 8]] * 2, np.uint32)), 0.0
+    for tick in range(1, 99):
+        way, near = 32 * senses[0, :2], np.abs(senses[0, :2]).max()
+        senses, outcome = pasture.step(np.float32([way, [1, 0]]), np.ones(2, bool))
+        assert outcome.fatal.tolist() == [False, tick > 32]
+        if outcome.food[0]:
+            assert near < 0.2 + 1 / 32 <= 2 * np.abs(senses[0, :2]).max()
+        eaten += outcome.food[0]
+    assert eaten >= 3
+
+
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Archive:
     """Live in the world of all parts."""
@@ -60,6 +89,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Archive:
     return Archive(out)
 
 
+@pytest.mark.slow
 def test_a_life_of_an_own_brain_is_lived_again(run: Archive) -> None:
     """The longest life; it raises Trouble if it ends otherwise than recorded."""
     own = {"kind": "examples.brain:Leaky", "efference": False, "interoception": False, "neurons": 6}
@@ -71,6 +101,7 @@ def test_a_life_of_an_own_brain_is_lived_again(run: Archive) -> None:
     assert ticks == run.lives.lifespan[row] > 10
 
 
+@pytest.mark.slow
 def test_an_own_habitat_feeds_and_is_drawn(run: Archive, tmp_path: Path) -> None:
     deaths = run.table("deaths")
     assert {"fatal", "starved"} <= set(deaths["cause"].to_pylist())
@@ -80,6 +111,7 @@ def test_an_own_habitat_feeds_and_is_drawn(run: Archive, tmp_path: Path) -> None
     assert (tmp_path / "life.gif").stat().st_size > 1000
 
 
+@pytest.mark.slow
 def test_what_an_own_mutation_lets_inherit_is_on_record(run: Archive) -> None:
     """Copies have their parent's exponent; mutants are up to a stride away; founders have none."""
     births = run.table("births").to_pylist()
@@ -97,13 +129,10 @@ def test_what_an_own_mutation_lets_inherit_is_on_record(run: Archive) -> None:
 
 
 @pytest.mark.slow
-def test_genomes_come_back_from_records(run: Archive) -> None:
-    assert_rebuilt(run.path)
-
-
-def test_genomes_come_back_across_a_fork_and_it_is_verified(run: Archive, tmp_path: Path) -> None:
+def test_genomes_come_back_from_records_and_across_a_fork(run: Archive, tmp_path: Path) -> None:
     original = primordia.load(run.path)
     assert original.verify() == []
+    assert_rebuilt(run.path)
     fork = original.fork(200, tmp_path / "fork", seed=9, stop={"ticks": 500})
     assert fork.verify() == []
     assert_rebuilt(fork.path)
@@ -127,17 +156,10 @@ def test_the_table_of_factors_is_of_eighths_of_octaves() -> None:
 @pytest.mark.parametrize(
     ("words", "shown"),
     [
-        (
-            ["--brain.kind", "examples.brain:Leaky"],
-            "--brain.neurons neurons in the hidden layer [16]",
-        ),
-        (["--mutation.kind", "examples.mutation:SelfAdaptive"], "--mutation.stride most eighths"),
-        (
-            ["--habitat.name", "examples.habitat:Pasture"],
-            "--habitat.reach distance at which a tuft",
-        ),
+        (["--brain.kind", "examples.brain:Leaky"], "--brain.neurons neurons in the hidden layer [16]"),
+        (["--habitat.name", "examples.habitat:Pasture"], "--habitat.reach distance at which a tuft"),
     ],
-)
+)  # fmt: skip
 def test_help_shows_the_settings_of_a_part_that_is_named(words: list[str], shown: str) -> None:
     done = here("run", TASK, *words, "--help")
     assert (done.returncode, done.stderr) == (0, "")

@@ -14,10 +14,10 @@ from tests.goldens import CASES, FILE, entries, live, tasks
 GOLDENS: dict[str, Any] = json.loads(FILE.read_text(encoding="utf-8"))
 PLAYS: dict[str, Any] = json.loads(plays.FILE.read_text(encoding="utf-8"))
 
-SHOWN = {"CartPole-survival", "fork-of-fork", "breakout-random-forager"}
+SHOWN = {"CartPole-survival", "breakout-random-forager"}
 """Tasks in JAX and on the host, what is drawn at random, and what feeds. Others are slow.
 
-Every simulator is played below, and laws have seasons.
+Every simulator but the Atari games is played below, and laws have seasons.
 """
 
 
@@ -51,26 +51,17 @@ def test_each_task_has_the_settings_with_which_it_was_played() -> None:
     }
 
 
-HABITATS = {file: plays.settings_of(file)["habitat"]["name"] for file in plays.NAMES}
-ALIKE = {f"{name}.toml" for name in (
-    "battlezone_survival_forager", "boxing_survival_fight", "breakout_survival_forager",
-    "cartpole_survival", "halfcheetah_forager_ratchet", "humanoid_homeostasis", "pong_survival",
-    "pong_survival_blind", "reacher_forager", "walker_survival_forager_1ms",
+PLAYED = {f"{name}.toml" for name in (
+    "cartpole_survival_hidden", "lunarlander_survival", "mountaincar_forager",
+    "reacher_forager_costly",
 )}  # fmt: skip
-"""Tasks whose simulator and game another task has too, or a golden run above."""
+"""Tasks of each simulator, with food and effort. Others are slow; those of gymnax compile for long."""
 
 
-@pytest.mark.parametrize(
-    "file",
-    [
-        pytest.param(file, marks=pytest.mark.slow if habitat == "gymnax" or file in ALIKE else ())
-        for file, habitat in HABITATS.items()
-    ],
-)
+@pytest.mark.parametrize("file", marked(((file, None) for file in plays.NAMES), PLAYED))
 def test_each_task_is_played_as_it_was(file: str) -> None:
-    """Those of gymnax take long to compile, and one task of each game is enough for `make test`."""
     packages = {"atari": "ale_py", "mujoco": "mujoco", "gymnasium": "Box2D", "gymnax": "craftax"}
-    package = packages.get(HABITATS[file])
+    package = packages.get(plays.settings_of(file)["habitat"]["name"])
     if package is not None:
         pytest.importorskip(package)
     if device.instruction_set() != PLAYS["instruction_set"]:

@@ -10,9 +10,11 @@ from tests.worlds import config
 
 @pytest.fixture(scope="session")
 def poles(tmp_path_factory: pytest.TempPathFactory) -> primordia.Run:
-    """Return two worlds of CartPole in which some organisms live long."""
+    """Return an arm of two worlds of CartPole in which some organisms live long."""
     path = tmp_path_factory.mktemp("assays") / "poles"
-    loop.start(config(seeds=2, cells=16, stop={"ticks": 600}), path)
+    for seed in range(2):
+        own = config(seed=seed, cells=8, hazard=0.002, stop={"ticks": 600, "until": "none"})
+        loop.start(own, path / str(seed))
     return primordia.load(path)
 
 

@@ -1,7 +1,6 @@
 """Evaluation with controls: who is chosen among how many, and by which games they are judged."""
 
 import json
-import shutil
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, NamedTuple
@@ -15,33 +14,19 @@ from primordia.assays.controls import Group, Standing, evolved, unevolved
 from primordia.brains import genomes
 from primordia.errors import InputError
 from primordia.history.founders import founders
-from primordia.organism.playing.games import play
+from primordia.organism.playing.games import lifespans, play
 from primordia.organism.playing.players import founders_of
+from primordia.runs.archive import Archive
 from tests.commands import complains, here
 from tests.synthetic import worlds_of
-from tests.trouble import newest, reseal
 
 LONG = 50
 """Ticks up to which founders live when the best is chosen."""
 
 
-@pytest.fixture(scope="module")
-def poles(poles: primordia.Run, tmp_path_factory: pytest.TempPathFactory) -> primordia.Run:
-    """Return two worlds in which poles fall, that saturate soon."""
-    return changed(poles, tmp_path_factory.mktemp("poles") / "changed", saturation_ticks=LONG)
-
-
-def changed(run: primordia.Run, folder: Path, **settings: Any) -> primordia.Run:
-    """Return a copy of a run that tells of other settings."""
-    shutil.copytree(run.path, folder)
-    after = run.opened().config.model_copy(update=settings)
-    (folder / "config.toml").write_text(after.to_toml())
-    reseal(newest(folder))
-    return primordia.load(folder)
-
-
 def test_no_game_that_chose_an_organism_judges_it(poles: primordia.Run) -> None:
     run = poles.opened()
+    run.config = run.config.model_copy(update={"saturation_ticks": LONG})
     best, _ = unevolved(run, 30)
     world, _, everyone = founders_of(run, np.arange(2), np.full(2, 30))
     numbers = np.array([number for number, _ in best.numbers])
@@ -54,15 +39,18 @@ def test_no_game_that_chose_an_organism_judges_it(poles: primordia.Run) -> None:
 
 
 def test_founders_of_given_genomes_take_these(poles: primordia.Run, tmp_path: Path) -> None:
-    file = str(tmp_path / "two.safetensors")
-    poles.export(Path(file), 0, 3)
-    run = changed(poles, tmp_path / "run", ancestors=(file,)).opened()
+    file, run = str(tmp_path / "two.safetensors"), Archive(poles.path / "0")
+    poles.export(file, 0, 3)
+    run.config = run.config.model_copy(update={"ancestors": (file,)})
     given = genomes.read([file], run.layout)
     made = founders(run, 0, 4)
     assert {each.tobytes() for each in made} == {each.tobytes() for each in given}
 
 
-def test_the_command_prints_what_python_gives(poles: primordia.Run) -> None:
+def test_the_command_prints_what_python_gives(
+    poles: primordia.Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(controls, "lifespans", lambda players, _: lifespans(players, LONG))
     words = ["evaluate", poles.path, "--founders", 10, "--games", 2, "--ticks", 60]
     told = [each.to_dict() for each in poles.standings(10, games=2, ticks=60)]
     done = here(*words, "--json")
@@ -73,13 +61,14 @@ def test_the_command_prints_what_python_gives(poles: primordia.Run) -> None:
     assert names == ["champion", "all", "best", "founder"]
     complains(here(*words[:2], "--founders", 0), 2, "--founders")
     with pytest.raises(InputError, match="at least one founder"):
-        poles.standings(0)
+        poles.standings(0, games=1, ticks=60)
     complains(here(*words[:2], "--world", 2), 2, "there is no world 2")
 
 
 def test_a_fork_has_no_champion_before_a_birth(poles: primordia.Run, tmp_path: Path) -> None:
-    last = int(poles.lives().ended.max())
-    fork = poles.fork(last, tmp_path / "fork", stop={"ticks": last})
+    run = primordia.load(poles.path / "0")
+    last = int(run.lives().ended.max())
+    fork = run.fork(last, tmp_path / "fork", stop={"ticks": last})
     with pytest.raises(InputError, match="nothing has been born since the fork"):
         fork.standings()
 

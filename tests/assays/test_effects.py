@@ -65,12 +65,13 @@ def test_mutants_are_made_as_in_the_run_and_none_is_a_copy_or_made_twice(
 
 def test_calibrated_mutants_act_otherwise_in_no_more_moments(subjects: Subjects) -> None:
     remembered = moments_of(subjects.players, Calibrated().moments, 200)
+    held = jax.tree.map(np.asarray, remembered)
     (operator,) = module._others(subjects, (), (0.1,))
     made = mutants(subjects, operator, COUNT, remembered)
     for own, each, moments in zip(
-        subjects.players.genomes, made, zip(*remembered, strict=True), strict=True
+        subjects.players.genomes, made, zip(*held, strict=True), strict=True
     ):
-        known = Remembered(*(np.repeat(np.asarray(leaf)[None], COUNT, 0) for leaf in moments))
+        known = Remembered(*(np.repeat(leaf[None], COUNT, 0) for leaf in moments))
         change = np.asarray(CHANGE(subjects.law, known, np.repeat(own[None], COUNT, 0), each))
         assert (change <= 0.1).all()
         assert (change > 0).any()

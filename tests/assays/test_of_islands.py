@@ -68,7 +68,7 @@ def test_shadows_are_those_of_natives(
 
 
 def test_champions_and_founders_of_an_island_are_evaluated_there(isles: primordia.Run) -> None:
-    champion, alive, best, some = isles.standings(20, island="watch", games=1, ticks=60)
+    champion, alive, best, some = isles.standings(6, island="watch", games=1, ticks=60)
     for group in (champion, alive):
         for each in group.evaluations:
             assert home_of(isles, [each.organism], each.world) == {"watch"}
@@ -76,7 +76,7 @@ def test_champions_and_founders_of_an_island_are_evaluated_there(isles: primordi
     native = isles.opened().config.islands.of_cells(lives.cell) == 1
     assert len(alive.evaluations) == (native & ~lives.died).sum()
     most = np.bincount(lives.world[native]).max()
-    assert (champion.chosen_from, best.chosen_from) == (most, min(20, most))
+    assert (champion.chosen_from, best.chosen_from) == (most, min(6, most))
     assert {each.world for each in some.evaluations} == {0, 1}
     assert [each.id for each in isles.champions("watch")] == [
         each.organism for each in champion.evaluations
@@ -103,14 +103,14 @@ def test_games_on_another_island_are_those_of_its_habitat(isles: primordia.Run) 
 def test_assays_of_islands_tell_what_python_returns(
     name: str, isles: primordia.Run, tmp_path: Path
 ) -> None:
-    words: list[Any] = ["--each", 3, "--games", 1, "--ticks", 40]
-    words += ["--most", 4] if name == "generalists" else []
+    words: list[Any] = ["--each", 2, "--games", 1, "--ticks", 40]
+    words += ["--most", 3] if name == "generalists" else []
     told = here("assay", name, isles.path, *words, "--out", tmp_path, "--json")
     assert told.returncode == 0, told.stderr
-    run, manner = isles.opened(), {"each": 3, "games": 1, "ticks": 40}
+    run, manner = isles.opened(), {"each": 2, "games": 1, "ticks": 40}
     found: list[Any] = {
         "transplant": lambda: transplant(run, **manner),
-        "generalists": lambda: generalists(run, **manner, most=4),
+        "generalists": lambda: generalists(run, **manner, most=3),
     }[name]()
     expected = json.loads(json.dumps([each.to_dict() for each in found]))
     assert json.loads(told.stdout) == {str(isles.path): expected}

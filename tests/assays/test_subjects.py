@@ -95,9 +95,9 @@ def test_founders_of_a_task_are_not_judged_by_the_games_that_chose_them(
 def test_founders_of_a_task_are_those_that_they_always_were() -> None:
     """Tables of experiments name them by their numbers."""
     first = [[0.00957343, -0.0262672, -0.00436687], [-0.01828807, -0.01208586, -0.01472166]]
-    made = founders(load("CartPole-survival"), 5)
+    made = founders(load("CartPole-survival"), FOUNDERS)
     np.testing.assert_allclose(made[:2, :3], first, rtol=1e-6)
-    other = founders(load("CartPole-survival", {"seed": 5}), 5)
+    other = founders(load("CartPole-survival", {"seed": 5}), FOUNDERS)
     assert (other != made).any(axis=1).all(), "the seed of the task counts"
 
 

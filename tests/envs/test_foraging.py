@@ -80,6 +80,14 @@ def test_food_is_measured_from_observation_reward_and_info() -> None:
     assert [info["food"] for *_, info in lived(env, 3)] == [10.0, 22.0, 36.0]
 
 
+def test_food_that_is_not_finite_is_not_eaten() -> None:
+    for food in (np.inf, -np.inf, np.nan):
+        meals = iter([2.0, food])
+        env = Forager(Script(), lambda *_, meals=meals: next(meals))
+        env.reset()
+        assert [info["food"] for *_, info in lived(env, 2)] == [2.0, 2.0]
+
+
 @pytest.mark.parametrize(
     ("end", "cause", "ticks"), [(5, "fatal", 5), (6, "fatal", 6), (7, "starved", 6)]
 )

@@ -9,6 +9,8 @@ from PIL import Image
 
 pytest.importorskip("gymnasium")
 
+from gymnasium.error import ResetNeeded
+
 from primordia.envs import LifeEnv
 from primordia.habitats.cartpole.picture import draw
 from tests.toys import Organ
@@ -19,6 +21,8 @@ TASK = "CartPole-survival"
 
 def test_a_picture_shows_the_present_body_and_the_latest_action() -> None:
     env = LifeEnv(TASK, {"habitat": {"track_limit": 5.0}}, render_mode="rgb_array")
+    assert env.metadata["render_fps"] == 50, "from which Gymnasium's recorders read the speed"
+    assert LifeEnv.metadata["render_fps"] == 30
     for seed in (1, 2):
         pictures, actions = [(env.reset(seed=seed)[0], env.render())], [0, 1, 1]
         pictures += [(env.step(action)[0], env.render()) for action in actions]
@@ -50,6 +54,8 @@ def test_nothing_is_drawn_without_a_render_mode_or_without_pictures_of_the_habit
     env = LifeEnv(TASK)
     env.reset(seed=1)
     assert env.render() is None
+    with pytest.raises(ResetNeeded, match="there is no body to see"):
+        LifeEnv(TASK, render_mode="rgb_array").render()
     meadow = {"habitat": {"name": "tests.toys:Meadow"}}
     blind = LifeEnv(TASK, meadow, render_mode="rgb_array")
     blind.reset(seed=1)

@@ -9,6 +9,7 @@ import primordia
 from primordia.organism.reliving.in_jax import LifeInJax
 from primordia.organism.reliving.on_host import LifeOnHost
 from primordia.runs import loop
+from primordia.runs.archive import Archive
 from tests.worlds import LEARNERS, MILLS, config
 
 CALM = {"hazard": 0.002}
@@ -58,8 +59,15 @@ def poles(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="package")
-def learners(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Make a world of poles with plastic brains, whose buttons swap at the ages 6, 17 and 40."""
-    run = tmp_path_factory.mktemp("learners") / "run"
-    loop.start(config(**LEARNERS, stop={"ticks": 90, "until": "none"}), run)
+def learners(tmp_path_factory: pytest.TempPathFactory) -> Archive:
+    """Make a world of plastic brains, whose buttons swap at the ages 6, 17 and 40.
+
+    Nothing has lived in it. Its records are told that all were born in tick 10 and are alive in tick 65,
+    as founder 7 would be, whose pole falls through late.
+    """
+    path = tmp_path_factory.mktemp("learners") / "run"
+    habitat = {**LEARNERS["habitat"], "angle_limit": 180.0, "track_limit": 1e9}
+    loop.start(config(**{**LEARNERS, "habitat": habitat}, stop={"births": 1}), path)
+    run = Archive(path)
+    run.lives.born[:], run.lives.seen[:], run.lives.ended[:] = 10, 10, 65
     return run

@@ -9,12 +9,14 @@ import pytest
 
 import primordia
 from primordia.cli.evaluate import _quartiles
+from primordia.law.metabolism import ONE
 from primordia.organism.playing import games
 from primordia.organism.playing.evaluation import Evaluation, Spread, evaluate
+from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
-from tests.worlds import MEADOW, config
+from tests.worlds import CLOCKWORK, MEADOW, config
 
 
 def games_of(ticks: list[int], over: list[bool], food: list[float]) -> games.Games:
@@ -35,7 +37,7 @@ def test_lives_and_whole_games_have_numbers_of_their_own() -> None:
     }  # fmt: skip
 
 
-@pytest.mark.parametrize("senses", ["live", "frozen", "ignored"])
+@pytest.mark.parametrize("senses", ["frozen", "ignored"])
 def test_organisms_play_side_by_side_as_they_play_alone(
     poles: Path, monkeypatch: pytest.MonkeyPatch, senses: Any
 ) -> None:
@@ -142,3 +144,30 @@ def test_wrong_input_is_an_error_that_says_why(poles: Path) -> None:
         (("--organism", "9999999"), "no organism 9999999"),
     ):
         complains(here("evaluate", poles, *words), 2, part)
+
+
+@pytest.mark.slow
+def test_games_have_the_food_of_lives_and_the_latest_climate_of_their_world(tmp_path: Path) -> None:
+    """Life becomes harder and then easier, so its end changes."""
+
+    def season(setting: str, at: int, value: float) -> dict[str, Any]:
+        return {"kind": "schedule", "setting": f"metabolism.{setting}", "at": at, "value": value}
+
+    seasons = [season("drain", 50, 3.0), season("store", 60, 60.0), season("drain", 75, 6.5)]
+    fed = {"habitat": {**MEADOW["habitat"], "food": 0.5}, "metabolism": {"store": 20.0}}
+    settings = {**CLOCKWORK, **fed, "seasons": seasons}
+
+    def played(ticks: int) -> tuple[list[int], list[float]]:
+        loop.resume(tmp_path / "run", {"ticks": ticks})
+        (found,) = evaluate(Archive(tmp_path / "run"), [(0, 1)], games=2)
+        (cut,) = evaluate(Archive(tmp_path / "run"), [(0, 1)], games=2, ticks=9)
+        assert (found.lived.over.all(), cut.to_dict()["alive_when_cut"]) == (True, 2)
+        return found.lived.ticks.tolist(), found.lived.food.tolist()
+
+    loop.start(config({**settings, "stop": {"ticks": 1}}), tmp_path / "run")
+    assert played(45) == ([40] * 2, [20.0] * 2)
+    run = Archive(tmp_path / "run")
+    assert run.lives.lifespan[0] == 40
+    assert RelivedLife.of(run, 0).at_death == (0, 20 * ONE)
+    assert played(70) == ([24] * 2, [12.0] * 2)
+    assert played(90) == ([10] * 2, [5.0] * 2)

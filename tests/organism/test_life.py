@@ -5,7 +5,6 @@ from types import SimpleNamespace
 from typing import Any
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 import pytest
 
@@ -59,31 +58,6 @@ def test_the_living_reach_their_recorded_state_when_lived_again(
         assert_ends_as_recorded(RelivedLife.of(run, lives.id[row], lives.world[row]))
 
 
-def test_the_dead_die_in_their_recorded_tick_when_lived_again(mill: Path) -> None:
-    """They starve in the tick in which energy runs out, or die when their bodies fail."""
-    run = Archive(mill)
-    lives = run.lives
-    for cause in (Cause.STARVED, Cause.FATAL):
-        rows = np.flatnonzero(lives.cause == cause)[-5:]
-        assert len(rows)
-        for row in rows:
-            assert_ends_as_recorded(RelivedLife.of(run, lives.id[row], lives.world[row]))
-
-
-def test_a_life_older_than_a_fork_continues_from_the_fork(mill: Path, tmp_path: Path) -> None:
-    """This holds also for an organism born in the tick of the fork, whose body is from the old seed."""
-    before = Archive(mill).lives
-    at = int(before.born[(before.born > 300) & (before.lifespan > 12)][0])
-    fork = Archive(primordia.load(mill).fork(at, tmp_path / "fork", seed=9).path)
-    lives = fork.lives
-    older = (lives.born <= at) & (lives.ended > at + 3)
-    newest = older & (lives.born == at)
-    assert newest.any()
-    for row in [*np.flatnonzero(newest)[:1], *np.flatnonzero(older & ~newest)[:4]]:
-        life = RelivedLife.of(fork, lives.id[row], lives.world[row])
-        assert assert_ends_as_recorded(life)[0].tick[0] == at + 1
-
-
 def test_a_second_life_of_another_length_compiles_nothing(
     poles: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
@@ -107,7 +81,7 @@ def test_an_accident_kills_only_what_dies_of_nothing_else() -> None:
         record=SimpleNamespace(cell=np.zeros(1, np.int32)),
         _seed=wide([7]),
     )
-    hazard = jnp.repeat(jnp.array([0, 1], jnp.float32), len(causes))
+    hazard = np.repeat(np.float32([0, 1]), len(causes))
     found = RelivedLife._with_accidents(life, stretch, ticks, {"hazard": hazard})
     assert found.cause.tolist() == [*causes, Cause.HAZARD, *BODILY]
 

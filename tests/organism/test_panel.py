@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -22,14 +21,6 @@ MARK, EMPTY = (np.array(ImageColor.getrgb(each)) for each in (CHANGED, BLANK))
 PICTURE = Image.new("RGB", (640, 100), (90, 90, 90))
 
 
-def oldest(run: Path, died: bool) -> RelivedLife:
-    """Return the longest of the lives that have ended, or of those that go on."""
-    archive = Archive(run)
-    lives = archive.lives
-    rows = np.flatnonzero(lives.died == died)
-    return RelivedLife.of(archive, int(lives.id[rows[np.argmax(lives.lifespan[rows])]]))
-
-
 def moments(
     life: RelivedLife, *ages: range, length: int | None = None
 ) -> Iterator[tuple[int, np.ndarray]]:
@@ -46,24 +37,28 @@ def _stretches(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(LifeInJax, "TICKS", 24)
 
 
-def test_a_brain_that_thinks_again_ends_with_the_memory_on_record(learners: Path) -> None:
-    life = oldest(learners, died=False)
+@pytest.fixture
+def life(learners: Archive) -> RelivedLife:
+    return RelivedLife.of(learners, 7)
+
+
+def test_a_brain_that_thinks_again_ends_with_the_memory_of_the_life(life: RelivedLife) -> None:
     panels = Panels(life, [range(1, 9)], 8)
-    for stretch in life.stretches():
-        panels.follow(stretch)
-        np.testing.assert_array_equal(np.argmax(panels._output, axis=1), stretch.action)
-    assert life.ends - life.begins > 24
-    memory = life.run.state["world.organisms.memory"][int(life.record.cell[0])]
-    np.testing.assert_array_equal(panels._memory[0], memory)
-    bound = Plastic().bound
-    np.testing.assert_allclose(panels._shown["fast weights"][-1].ravel(), memory[-6:] / bound)
+    for held, stretch in life.instants():
+        if stretch is not None:
+            panels.follow(stretch)
+            np.testing.assert_array_equal(np.argmax(panels._output, axis=1), stretch.action)
+            memory = held["world.organisms.memory"]
+            np.testing.assert_array_equal(panels._memory, memory)
+    assert memory[0, -6:].any()
+    shown = panels._shown["fast weights"][-1].ravel()
+    np.testing.assert_allclose(shown, memory[0, -6:] / Plastic().bound)
 
 
-def test_a_frame_and_marks_show_the_changes_of_a_world(learners: Path) -> None:
+def test_a_frame_and_marks_show_the_changes_of_a_world(life: RelivedLife) -> None:
     """The world changes at the ages 6, 17 and 40, and each change is shown as new for 25 ticks."""
-    life = oldest(learners, died=False)
     last = life.ends - int(life.record.born[0])
-    assert last > 44
+    assert last == 55
     for age, seen in moments(life, range(1, 5), range(38, last + 1)):
         assert seen.shape == (100 + HEIGHT, 640, 3)
         edge = (seen[:FRAME, :] == MARK).all()
@@ -71,9 +66,7 @@ def test_a_frame_and_marks_show_the_changes_of_a_world(learners: Path) -> None:
         assert (seen[FRAME : 100 - FRAME, FRAME:-FRAME] == 90).all()
         marks = (seen[-12, :520] == MARK).all(axis=1)
         assert marks.any() == (age >= 40), "a change to come is pale, and the first is not shown"
-    for _, seen in moments(
-        life, range(41, last + 1), length=90
-    ):  # a mark is five pixels wide on each side
+    for _, seen in moments(life, range(41, last + 1), length=90):  # a mark is ten pixels wide
         assert not (seen[-12, :520] == MARK).all(axis=1).any(), "the change was before this part"
 
 
@@ -91,13 +84,10 @@ def test_the_past_is_drawn_up_to_the_present_age_and_on_one_scale() -> None:
             np.testing.assert_allclose(place, tints(values[age - 1, row]), atol=1)
 
 
-def test_without_fast_weights_the_past_is_that_of_the_outputs(learners: Path) -> None:
-    """The organism was born late, and its brain does not learn. Outputs are drawn as bars of theirs."""
-    archive = Archive(learners)
-    rows = np.flatnonzero((archive.lives.born > 5) & (archive.lives.lifespan > 5))
-    born = RelivedLife.of(archive, int(archive.lives.id[rows[0]]))
-    life = replace(born, law=replace(born.law, brain=Plastic(hidden=3, bound=0.0)))
-    panels = Panels(life, [range(1, 6)], 5)
+def test_without_fast_weights_the_past_is_that_of_the_outputs(life: RelivedLife) -> None:
+    """Outputs are drawn as bars of theirs."""
+    fixed = replace(life, law=replace(life.law, brain=Plastic(hidden=3, bound=0.0)))
+    panels = Panels(fixed, [range(1, 6)], 5)
     panels.follow(next(life.stretches()))
     assert panels._shown == {}
     np.testing.assert_array_equal(panels._pasts[0]._rows, squashed(panels._output[:5]).T)
@@ -116,9 +106,9 @@ def test_bars_go_to_the_side_of_their_sign_and_those_that_act_are_dark() -> None
         assert (columns.min(), columns.max(), len(columns)) == (first, last, last + 1 - first)
 
 
-def test_a_panel_fits_below_a_narrow_picture(learners: Path) -> None:
+def test_a_panel_fits_below_a_narrow_picture(life: RelivedLife) -> None:
     """The picture is in the middle of the width that a panel needs."""
-    life, small = oldest(learners, died=False), PICTURE.resize((84, 84))
+    small = PICTURE.resize((84, 84))
     panels = Panels(life, [range(1, 3)], 2)
     for part, stretch, i in replay.moments(life, [range(1, 3)], 1, panels.follow):
         seen = np.asarray(panels.under(small, part, stretch, i))
@@ -128,17 +118,16 @@ def test_a_panel_fits_below_a_narrow_picture(learners: Path) -> None:
 
 
 def test_worlds_without_learning_and_changes_keep_their_pictures(poles: Path) -> None:
-    life = oldest(poles, died=True)
+    life = RelivedLife.of(Archive(poles), 0)
     panels, nothing = Panels(life, [range(1, 5)], 4), None
     panels.follow(nothing)
     assert panels.under(PICTURE, 0, nothing, 0) is PICTURE
     assert panel.colours(life.law, life.habitat) == []
 
 
-def test_a_life_is_filmed_with_its_panel(learners: Path, tmp_path: Path) -> None:
+def test_a_life_is_filmed_with_its_panel(life: RelivedLife, tmp_path: Path) -> None:
     """A GIF has the colours of panels, although its first picture is without marks."""
-    life: Any = oldest(learners, died=False)
-    path = replay.replay(life.run, int(life.record.id[0]), out=tmp_path / "a.gif", ages=(4, 8))
+    path = replay.replay(life.run, 7, out=tmp_path / "a.gif", ages=(4, 8))
     with Image.open(path) as film:
         assert film.size == (320, (360 + HEIGHT) // 2)
         film.seek(2)

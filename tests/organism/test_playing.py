@@ -165,7 +165,10 @@ def test_each_game_begins_with_the_store_of_its_player(players: Players) -> None
     start = begun(players.law, 2, Seats(players.genomes, players.keys, cells, rates))
     assert np.asarray(start.vitals.energy).tolist() == (store * ONE).tolist()
     assert not np.asarray(start.vitals.eaten).any()
-    assert (start.memory.shape, bool(start.memory.any())) == ((count, players.law.memory), False)
+    assert (start.memory.shape, np.asarray(start.memory).any()) == (
+        (count, players.law.memory),
+        False,
+    )
     assert np.asarray(start.mind.cell).tolist() == cells.tolist()
     words = body_words(stream(players.keys, Purpose.BODY, wide([0])), cells, 2)
     np.testing.assert_array_equal(start.words, words)

