@@ -130,16 +130,6 @@ class Turning(Walk):
 TURN = np.random.default_rng(3).normal(size=(100, 100)).astype(np.float32)
 
 
-class Counting(Walk):
-    """A walk that depends on how often its functions were called."""
-
-    calls = 0
-
-    def step_env(self, key: Any, state: Any, action: Any, params: Params) -> tuple[Any, ...]:
-        Counting.calls += 1
-        return super().step_env(key, state, action * 0.001 * Counting.calls, params)
-
-
 class Overwriting(Walk):
     """A walk whose steps write into the state that they are given."""
 

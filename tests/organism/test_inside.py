@@ -82,7 +82,7 @@ def test_a_saved_life_says_how_often_its_world_changed_and_a_policy_shows_what_i
     policy = organism.policy()
     assert not policy.pictured["fast weights"].any()
     assert [policy(senses) for senses in life["senses"]] == life["action"].tolist()
-    bound = learners.law.brain.bound
+    bound = learners.config.brain["bound"]
     shown = policy.pictured["fast weights"]
     assert (shown.shape, shown.dtype) == ((2, 3), np.float32)
     fast = policy.memory[-shown.size :]
