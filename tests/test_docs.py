@@ -37,8 +37,8 @@ def name(page: Path) -> str:
     return page.relative_to(HERE).as_posix()
 
 
-SHOWN = ("README", "phylogeny", "relive", "install", "settings")
-"""Pages that are followed to the letter in `make test`: they live in one law. Others are slow."""
+SHOWN = ("README", "install", "settings")
+"""Pages that are followed to the letter in `make test`. Others are slow."""
 WITH_BLOCKS = [
     pytest.param(page, id=name(page), marks=pytest.mark.slow if page.stem == "gymnax" else ())
     for page in PAGES

@@ -17,6 +17,8 @@ from urllib.parse import urlsplit
 import pytest
 
 import primordia
+from primordia import interrupts
+from primordia.report import server as serving_
 from primordia.report import watched
 from primordia.report.content import of_run
 from primordia.report.page import embedded
@@ -219,6 +221,25 @@ def address_of(process: subprocess.Popen[str]) -> str:
     return process.stdout.readline().split()[0]
 
 
+def test_the_command_says_where_the_page_is_and_at_its_end_that_the_run_is_unchanged(
+    torus: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    last: list[str] = []
+
+    def watch(open_: Any, port: int, begun: Any) -> None:
+        begun(f"http://{HERE}:{port}/")
+        last.append(interrupts._last_words[-1]())
+
+    monkeypatch.setattr(serving_, "watch", watch)
+    done = here("watch", torus, "--port", 7)
+    assert (done.returncode, done.stdout.split()[:3]) == (
+        0,
+        [f"http://{HERE}:7/", "shows", str(torus)],
+    )
+    assert last == ["Stopped watching; the run is unchanged"]
+
+
+@pytest.mark.slow  # `tests/trouble/test_interrupts.py` sends signals to other commands
 def test_ctrl_c_ends_it_at_once_with_one_line(torus: Path) -> None:
     with commands.begin("watch", torus, "--port", 0) as process:
         address = urlsplit(address_of(process))

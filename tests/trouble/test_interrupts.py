@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from primordia import files, interrupts
+from primordia.cli import commands
 from primordia.runs.directory import VERSIONS
 from tests.commands import begin, environment, here
 from tests.trouble import SMALL, TICKS, goes_on
@@ -206,6 +207,27 @@ with patch.object(commands, "commands", fail):
 """A command whose main thread gets to its end before the thread that ends the process."""
 
 
+def test_a_command_that_a_signal_ends_waits_for_its_end_before_it_says_what_failed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    said: list[object] = []
+
+    def fail(**_: object) -> None:
+        interrupts._ending.append(True)
+        raise OSError("its file is gone")
+
+    def pause() -> None:
+        said.append("waited")
+        interrupts._ending.clear()
+
+    monkeypatch.setattr(signal, "pause", pause)
+    monkeypatch.setattr(commands, "commands", fail)
+    monkeypatch.setattr(commands, "report", lambda error: said.append(str(error)))
+    assert commands.execute() == 1
+    assert said == ["waited", "its file is gone"]
+
+
+@pytest.mark.slow  # the one above does the same in this process
 def test_a_command_that_a_signal_ends_says_nothing_of_what_failed_meanwhile() -> None:
     done = process(OVERTAKEN)
     assert (done.returncode, done.stdout, done.stderr) == (interrupts.STATUS, "", "Stopped\n")
