@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from primordia import config, fitting
+from primordia import config
 
 HERE = Path(__file__).parent.parent
 TEMPLATES = HERE / "docs" / "templates"
@@ -67,7 +67,7 @@ def filled(fill: ModuleType) -> dict[Path, str]:
     """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(config, "load", cache(config.load))
-        patch.setattr(fitting, "check", lambda settings: None)
+        patch.setattr(config, "check", lambda settings: None)
         pages: dict[Path, str] = fill.pages()
     return pages
 
