@@ -180,33 +180,6 @@ def test_a_signal_ends_work_that_has_deferred_one_for_two_seconds(
     assert (done.returncode, done.stdout, done.stderr) == outcome
 
 
-OVERTAKEN = """
-import atexit, os, signal, sys, threading
-from unittest.mock import patch
-from primordia import interrupts
-from primordia.cli import commands
-
-undone, at_the_end = threading.Event(), threading.Event()
-atexit.register(at_the_end.set)
-signal.pause = lambda: (at_the_end.set(), threading.Event().wait())
-
-def undo():
-    undone.set()
-    at_the_end.wait()
-
-def fail(**_):
-    with interrupts.before_end(undo):
-        os.kill(os.getpid(), signal.SIGINT)
-        undone.wait()
-    raise OSError("its file is gone")
-
-interrupts.end_commands_at_once()
-with patch.object(commands, "commands", fail):
-    sys.exit(commands.execute())
-"""
-"""A command whose main thread gets to its end before the thread that ends the process."""
-
-
 def test_a_command_that_a_signal_ends_waits_for_its_end_before_it_says_what_failed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -225,12 +198,6 @@ def test_a_command_that_a_signal_ends_waits_for_its_end_before_it_says_what_fail
     monkeypatch.setattr(commands, "report", lambda error: said.append(str(error)))
     assert commands.execute() == 1
     assert said == ["waited", "its file is gone"]
-
-
-@pytest.mark.slow  # the one above does the same in this process
-def test_a_command_that_a_signal_ends_says_nothing_of_what_failed_meanwhile() -> None:
-    done = process(OVERTAKEN)
-    assert (done.returncode, done.stdout, done.stderr) == (interrupts.STATUS, "", "Stopped\n")
 
 
 LAST = """

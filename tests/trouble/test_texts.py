@@ -234,14 +234,3 @@ def test_a_command_whose_output_fails_says_so_unless_its_reader_has_gone(half: P
     assert executed(errno.EPIPE, 0, "info", half) == (1, "")
     full = "primordia: standard output: No space left on device\n"
     assert executed(errno.ENOSPC, 0, "info", half) == (1, full)
-
-
-def test_what_cannot_be_written_at_the_end_is_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Python would try again at its exit."""
-    reader, writer = os.pipe()
-    os.close(reader)
-    with Printable(open(writer, "wb"), "utf-8") as stream:
-        monkeypatch.setattr(sys, "stdout", stream)
-        stream.write("text")
-        streams.flush()
-        stream.write("more")
