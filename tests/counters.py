@@ -1,9 +1,12 @@
-"""A simulator for tests of the pool: each cell counts, and fails on request."""
+"""Simulators for tests of the pool: each cell counts, and fails on request, or tells its tree."""
 
 import os
 import time
+from pathlib import Path
 
 import numpy as np
+
+from primordia.pool import board
 
 MANY = 10_000
 """Length of a saved state, in copies of a number; the pipe to a worker holds 64 KiB."""
@@ -50,3 +53,16 @@ class Counters:
         text = state.decode()
         self._total[cell] = int(text[: len(text) // (MANY * (cell + 1))])
         self._publish(cell)
+
+
+class Place:
+    """A simulator that reports whether its process imports the tree whose package is in a folder."""
+
+    def __init__(self, arrays: dict[str, np.ndarray], source: str) -> None:
+        self._arrays, self._source = arrays, Path(source)
+
+    def make(self, cell: int) -> None:
+        self._arrays["same"][cell] = False
+
+    def reset(self, cell: int) -> None:
+        self._arrays["same"][cell] = Path(board.__file__) == self._source / "pool" / "board.py"

@@ -1,16 +1,12 @@
-"""The number of cores that a process uses."""
+"""The number of cores that a process uses; `test_device.py` counts its threads."""
 
 import os
-import subprocess
-import sys
 from contextlib import suppress
-from pathlib import Path
 
 import pytest
 
 from primordia import cores
 from primordia.errors import InputError
-from tests.commands import environment
 
 
 def test_the_number_of_cores_is_that_of_the_variable(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -35,32 +31,6 @@ def test_a_wrong_variable_is_one_line_that_names_it(
         cores.count()
     assert repr(wrong) in str(said.value)
     assert "\n" not in str(said.value)
-
-
-THREADS = """
-from contextlib import suppress
-from pathlib import Path
-from primordia import device
-device.prepare()
-names = []
-for task in Path("/proc/self/task").iterdir():
-    with suppress(OSError):  # a thread may end while its name is read
-        names.append(task.joinpath("comm").read_text())
-print(sum("XLA" in name for name in names))
-"""
-
-
-def test_xla_starts_as_many_threads_as_there_are_cores() -> None:
-    if not Path("/proc/self/task").is_dir():
-        pytest.skip("needs Linux")
-    done = subprocess.run(
-        [sys.executable, "-c", THREADS],
-        env={**environment(), "PRIMORDIA_CORES": "3"},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert int(done.stdout) == 3
 
 
 @pytest.mark.parametrize("given", [None, "3"])

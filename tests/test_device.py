@@ -16,6 +16,8 @@ from primordia.device import ISA_FLAG
 from primordia.errors import InputError
 from tests.commands import environment
 
+TASK = "CartPole-survival"
+LAW: dict[str, Any] = {"cells": 8, "hazard": 0.002, "stop": {"ticks": 50}}
 SETTINGS = """
 import os, sys
 import jax
@@ -49,6 +51,20 @@ print(primordia.load(sys.argv[2]).info()["versions"]["instruction_set"], os.envi
 )
 
 
+def settings() -> dict[str, Any]:
+    """Return what JAX is set to."""
+    names = [name for name in dir(jax.config) if name.startswith("jax_")]
+    return {"async": _is_asynchronous()} | {name: getattr(jax.config, name) for name in names}
+
+
+def test_a_run_and_a_look_at_it_change_no_setting_of_jax(tmp_path: Path) -> None:
+    before = settings()
+    run = primordia.run(TASK, tmp_path / "run", **LAW)
+    run.info()
+    run.organism(3).genome()
+    assert settings() == before
+
+
 on_x86 = pytest.mark.skipif(
     platform.machine() not in ("x86_64", "AMD64"), reason="only there XLA has sets to choose from"
 )
@@ -58,8 +74,7 @@ on_x86 = pytest.mark.skipif(
 def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run in a law of other tests, whose code is kept for the processes that tests start."""
     path = tmp_path_factory.mktemp("device") / "run"
-    law = {"cells": 8, "hazard": 0.002}
-    return primordia.run("CartPole-survival", path, **law, stop={"ticks": 50}).path
+    return primordia.run(TASK, path, **LAW).path
 
 
 def python(program: str, *words: object, flags: str = "") -> str:
@@ -76,13 +91,14 @@ def test_looking_at_a_run_changes_no_setting_of_the_process(run: Path) -> None:
     python(LOOK, run)
 
 
+@pytest.mark.slow  # `test_a_run_and_a_look_at_it_change_no_setting_of_jax` is the same in this process
 @on_x86
 @pytest.mark.parametrize(
     ("flags", "allowed"),
     [
         ("--xla_force_host_platform_device_count=1", "AVX2"),
-        pytest.param("", "AVX2", marks=pytest.mark.slow),
-        pytest.param(f"{ISA_FLAG}=AVX", "AVX", marks=pytest.mark.slow),
+        ("", "AVX2"),
+        (f"{ISA_FLAG}=AVX", "AVX"),
     ],
 )
 def test_a_run_is_limited_to_avx2_unless_the_user_chose_otherwise(
@@ -201,15 +217,30 @@ def test_a_faulty_variable_is_an_error_and_the_option_is_restored(
     assert _is_asynchronous() == before
 
 
-def test_whether_jax_has_started_is_found_without_a_change() -> None:
-    ask = (
-        "import jax; from primordia.device import started;"
-        "devices = jax.config.jax_num_cpu_devices;"
-        "assert not started() and not started();"
-        "jax.devices();"
-        "assert started() and jax.config.jax_num_cpu_devices == devices"
-    )
-    python(ask)
+STARTING = """
+import jax
+from contextlib import suppress
+from pathlib import Path
+from primordia import device
+devices = jax.config.jax_num_cpu_devices
+assert not device.started() and not device.started()
+device.prepare()
+assert device.started() and jax.config.jax_num_cpu_devices == devices
+names = []
+for task in Path("/proc/self/task").iterdir():
+    with suppress(OSError):  # a thread may end while its name is read
+        names.append(task.joinpath("comm").read_text())
+print(sum("XLA" in name for name in names))
+"""
+
+
+def test_jax_is_found_to_have_started_with_a_thread_for_each_core(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    if not Path("/proc/self/task").is_dir():
+        pytest.skip("needs Linux")
+    monkeypatch.setenv("PRIMORDIA_CORES", "3")
+    assert int(python(STARTING)) == 3
 
 
 def test_jax_that_has_started_is_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:

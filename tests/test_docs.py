@@ -37,17 +37,25 @@ def name(page: Path) -> str:
     return page.relative_to(HERE).as_posix()
 
 
-SHOWN = ("README", "phylogeny", "relive", "install", "settings")
-"""Pages that are followed to the letter in `make test`: they live in one law. Others are slow."""
+SMALL = ("--cells", 8, "--hazard", 0.002)
+SHOWN = ("README", "install", "settings")
+"""Pages that `make test` follows in the law of other tests. Slow tests follow all to the letter."""
 WITH_BLOCKS = [
     pytest.param(page, id=name(page), marks=pytest.mark.slow if page.stem == "gymnax" else ())
     for page in PAGES
     if blocks(page)
 ]
 FOLLOWED = [
-    pytest.param(page, id=name(page), marks=() if page.stem in SHOWN else pytest.mark.slow)
-    for page in PAGES
-    if blocks(page) and page.stem not in RECIPES  # `tests/test_recipes.py` follows those
+    *(
+        pytest.param(page, SMALL, id=f"{name(page)} with few cells")
+        for page in PAGES
+        if page.stem in SHOWN
+    ),
+    *(
+        pytest.param(page, (), id=name(page), marks=pytest.mark.slow)
+        for page in PAGES
+        if blocks(page) and page.stem not in RECIPES  # `tests/test_recipes.py` follows those
+    ),
 ]
 
 
@@ -63,8 +71,8 @@ def run(words: list[str], where: Path) -> None:
     assert done.returncode == 0, f"{words[-1]}\n{done.stdout}{done.stderr}"
 
 
-def try_out(kind: str, text: str, where: Path) -> None:
-    """Do with a block what a reader does."""
+def try_out(kind: str, text: str, where: Path, law: tuple[object, ...] = ()) -> None:
+    """Do with a block what a reader does, with more flags for each run."""
     if named := FILE.match(text):
         (where / named[1]).write_text(text)
     if kind == "sh":
@@ -74,7 +82,7 @@ def try_out(kind: str, text: str, where: Path) -> None:
                 run(["make", "-n", "-C", str(HERE), *words], where)
             elif program:
                 assert program == "primordia", line
-                done = commands.here(*words)
+                done = commands.here(*words, *(law if words[0] == "run" else ()))
                 assert done.returncode == 0, f"{line}\n{done.stdout}{done.stderr}"
     elif kind == "python":
         file = where / "block.py"
@@ -130,11 +138,13 @@ def assert_names_exist(program: str) -> None:
                     import_module(f"{node.module}.{each.name}")
 
 
-@pytest.mark.parametrize("page", FOLLOWED)
-def test_every_command_and_block_of_a_page_works(page: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("page", "law"), FOLLOWED)
+def test_every_command_and_block_of_a_page_works(
+    page: Path, law: tuple[object, ...], tmp_path: Path
+) -> None:
     """Commands and Python run in this process, for speed."""
     for kind, text in blocks(page):
-        try_out(kind, text, tmp_path)
+        try_out(kind, text, tmp_path, law)
 
 
 def test_links_of_pages_lead_to_files_that_exist() -> None:

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from primordia import config, fitting
+from primordia import config
 
 HERE = Path(__file__).parent.parent
 TEMPLATES = HERE / "docs" / "templates"
@@ -63,11 +63,11 @@ def _fill() -> Iterator[ModuleType]:
 def filled(fill: ModuleType) -> dict[Path, str]:
     """Return the text that each page should have.
 
-    For speed the settings of each task are read once, and functions of habitats are not traced.
+    For speed the settings of each task are read once, and no habitat is made.
     """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(config, "load", cache(config.load))
-        patch.setattr(fitting, "check_arrays", lambda habitat: None)
+        patch.setattr(config, "check", lambda settings: None)
         pages: dict[Path, str] = fill.pages()
     return pages
 

@@ -1,4 +1,4 @@
-"""The notebooks: each cell works, and gives what stands below it in the file."""
+"""The notebooks: each cell is Python, works, and gives what stands below it in the file."""
 
 import json
 from importlib import import_module
@@ -9,6 +9,7 @@ import pytest
 
 from primordia import device
 from tests.commands import HERE
+from tests.test_docs import assert_names_exist
 
 NOTEBOOKS = sorted((HERE / "notebooks").glob("*.ipynb"))
 
@@ -19,27 +20,32 @@ def texts(outputs: list[dict[str, Any]]) -> list[str]:
     return ["".join(each) for each in lines]
 
 
-@pytest.mark.parametrize(
-    ("path", "most"),
-    [
-        pytest.param(HERE / "notebooks" / "first-steps.ipynb", 2, id="the first steps"),
-        *(pytest.param(path, 99, id=path.stem, marks=pytest.mark.slow) for path in NOTEBOOKS),
-    ],
-)
+def cells(notebook: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return the cells with code."""
+    return [cell for cell in notebook["cells"] if cell["cell_type"] == "code"]
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_each_cell_of_a_notebook_imports_names_that_exist(path: Path) -> None:
+    every = cells(json.loads(path.read_text(encoding="utf-8")))
+    assert len(every) >= 5
+    for cell in every:
+        assert_names_exist("".join(cell["source"]))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 @pytest.mark.filterwarnings("default")  # a notebook shows a warning, and goes on
 def test_a_notebook_gives_what_stands_in_its_file(
-    path: Path, most: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Execute at most `most` cells. The first two cells draw no figure and show no film."""
     monkeypatch.syspath_prepend(str(HERE / "notebooks"))
     notebook = json.loads(path.read_text(encoding="utf-8"))
-    every = [cell for cell in notebook["cells"] if cell["cell_type"] == "code"]
-    assert len(every) >= 5
-    cells = every[:most]
-    made = import_module("run").execute({**notebook, "cells": cells}, tmp_path)
-    assert len(made) == len(cells)
+    every = cells(notebook)
+    made = import_module("run").execute(notebook, tmp_path)
+    assert len(made) == len(every)
     if device.instruction_set() == "x86_64 AVX2":
-        for cell, outputs in zip(cells, made, strict=True):
+        for cell, outputs in zip(every, made, strict=True):
             assert texts(outputs) == texts(cell["outputs"]), "run `python notebooks/run.py`"
 
 

@@ -6,10 +6,10 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import pytest
 
-from tests.test_docs import HERE, RECIPES, blocks, try_out
+from tests.test_docs import HERE, RECIPES, SMALL, blocks, try_out
 
 SHOWN = {"figure"}
-"""The one that lives in a law of other pages. `tests/test_examples.py` lives in parts of other kinds."""
+"""The one in the law of other tests. `tests/test_examples.py` lives in parts of other kinds."""
 
 
 @pytest.fixture(autouse=True)
@@ -31,7 +31,7 @@ def test_a_recipe_takes_one_file(
     steps = blocks(HERE / "docs" / "how-to" / f"{part}.md")
     assert steps[0][0] == "python"
     for kind, text in steps:
-        try_out(kind, text, tmp_path)
+        try_out(kind, text, tmp_path, SMALL if part in SHOWN else ())
     assert len(list(tmp_path.glob("*.py"))) == 1
     if part == "figure":
         made = {file.name for file in (tmp_path / "runs" / "some" / "figures").iterdir()}

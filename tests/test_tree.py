@@ -1,8 +1,8 @@
 """What is tested is this tree: in this process, and in each process that a test starts."""
 
+import os
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -20,39 +20,20 @@ def test_this_process_imports_this_tree() -> None:
     assert Path(primordia.__file__).parent == SOURCE
 
 
-def environments() -> Iterator[dict[str, str] | None]:
-    """Yield the variables of processes that tests start; None: those of this process."""
-    yield None
-    yield commands.environment()
-
-
-@pytest.mark.parametrize("number", range(2))
-def test_processes_import_this_tree_from_any_folder(number: int, tmp_path: Path) -> None:
-    variables = [*environments()][number]
+def test_processes_import_this_tree_from_any_folder(tmp_path: Path) -> None:
+    """Those that get the variables of this process, and those that get the same from `commands`."""
+    assert commands.environment() == dict(os.environ)
     command = [sys.executable, "-c", WHERE]
-    done = subprocess.run(
-        command, env=variables, cwd=tmp_path, capture_output=True, text=True, check=True
-    )
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
     assert Path(done.stdout.strip()) == SOURCE / "pool" / "worker.py"
 
 
 def test_workers_import_this_tree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """They import the simulators of the tests too, which no installed package has."""
     monkeypatch.chdir(tmp_path)
-    pool = pools.Workers(f"{__name__}:Place", {}, {"same": ("bool", ())}, 1, 1)
+    pool = pools.Workers(
+        "tests.counters:Place", {"source": str(SOURCE)}, {"same": ("bool", ())}, 1, 1
+    )
     pool.reset(np.ones(1, bool))
     assert pool.arrays["same"].tolist() == [True]
     pool.close()
-
-
-class Place:
-    """A simulator that reports whether its process imports this tree."""
-
-    def __init__(self, arrays: dict[str, np.ndarray]) -> None:
-        self._arrays = arrays
-
-    def make(self, cell: int) -> None:
-        self._arrays["same"][cell] = False
-
-    def reset(self, cell: int) -> None:
-        self._arrays["same"][cell] = Path(pools.__file__) == SOURCE / "pool" / "workers.py"

@@ -44,6 +44,7 @@ for word in ("--version", "tasks"):
 """A program that prints where the package is, its version, and all tasks."""
 
 
+@pytest.mark.slow
 def test_the_wheel_runs_without_the_repository(wheel: Path, tmp_path: Path) -> None:
     installed, empty = tmp_path / "installed", tmp_path / "empty"
     empty.mkdir()

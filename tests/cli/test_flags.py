@@ -139,7 +139,7 @@ EXPRESSIONS = st.sampled_from(
 LINES = st.lists(FLAGS, max_size=4).map(lambda parts: [word for part in parts for word in part])
 
 
-EXAMPLES = pytest.mark.parametrize("examples", [50, pytest.param(5000, marks=pytest.mark.slow)])
+EXAMPLES = pytest.mark.parametrize("examples", [20, pytest.param(5000, marks=pytest.mark.slow)])
 
 
 @EXAMPLES

@@ -29,11 +29,17 @@ OPENED.lives.id, OPENED.lives.world = np.arange(10, 20), np.arange(10)
 SUBJECTS = MagicMock(source="its name")
 
 
+@pytest.fixture(scope="module")
+def noted() -> MagicMock:
+    """Return what takes the place of a run; to make it takes a while."""
+    return create_autospec(primordia.Run(RUN), instance=True)
+
+
 @pytest.fixture
-def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[MagicMock]:
+def run(noted: MagicMock, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[MagicMock]:
     """Let `load` return a run that notes each call. The current folder is empty."""
     monkeypatch.chdir(tmp_path)
-    noted = create_autospec(primordia.Run(RUN), instance=True)
+    noted.reset_mock()
     for name in ("ancestors", "organism", "oldest"):
         getattr(noted, name).return_value = MagicMock(id=30, world=3)
     noted.ancestors.return_value.to_dict.return_value = {}

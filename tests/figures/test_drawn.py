@@ -59,7 +59,7 @@ LIVES = some_lives()
 KINDS = {"whole": LIVES, "fork": LIVES.recorded_since(FORK), "unequal": unequal(LIVES)}
 
 
-@pytest.fixture(params=KINDS)
+@pytest.fixture(params=[pytest.param("whole", marks=pytest.mark.slow), "fork", "unequal"])
 def lives(request: pytest.FixtureRequest) -> Lives:
     """Return the lives of a run; `since` counts their time from the fork."""
     return KINDS[request.param]

@@ -108,7 +108,7 @@ def test_figures_have_the_same_bytes_under_any_style_of_the_user(
     "lives",
     [
         world_of([(0, 0, False)], until=0),
-        world_of([(0, 0, False), (3, 0, False)], until=50),
+        pytest.param(world_of([(0, 0, False), (3, 0, False)], until=50), marks=pytest.mark.slow),
         worlds_of([(0, 2, True)] * 9, [(0, 70, True), (1, 0, False)], [(0, 0, False)], until=90),
     ],
     ids=["tick 0", "no deaths", "three worlds"],

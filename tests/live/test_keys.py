@@ -2,6 +2,7 @@
 
 import os
 import sys
+import termios
 from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
@@ -11,11 +12,13 @@ import numpy as np
 import pytest
 
 import primordia
-from primordia.live.terminal import Keyboard
+from primordia import interrupts
+from primordia.live.terminal import Keyboard, show_cursor
 from primordia.live.view import View
+from primordia.live.watching import watching
 from primordia.runs import loop
 from tests.live import posed
-from tests.live.terminals import Terminal, opened
+from tests.live.terminals import SETTINGS, Terminal, opened
 from tests.trouble import SMALL
 from tests.worlds import HERD, config
 
@@ -28,6 +31,7 @@ def terminal() -> Iterator[Terminal]:
         yield terminal
 
 
+@pytest.mark.slow  # the tests below do the same without a process
 def test_keys_pause_step_and_stop_and_the_terminal_is_given_back(
     terminal: Terminal, tmp_path: Path
 ) -> None:
@@ -58,6 +62,33 @@ def keyboard(terminal: Terminal, monkeypatch: pytest.MonkeyPatch) -> Iterator[ty
         monkeypatch.setattr(sys, "__stdin__", stdin)
         monkeypatch.setattr(Keyboard, "_in_front", lambda _: True)
         yield Keyboard
+
+
+def test_a_run_takes_a_terminal_and_gives_it_back(
+    terminal: Terminal, keyboard: type[Keyboard], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Ctrl-C remains a signal, before whose end the cursor is shown and the terminal is restored."""
+    before, undone = terminal.modes(), list(interrupts._undo)
+    for name in ("NO_COLOR", "TERM"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("TERM", SETTINGS["TERM"])
+    with open(os.ttyname(terminal.theirs), "w") as screen:
+        for name in ("stdout", "__stdout__"):
+            monkeypatch.setattr(sys, name, screen)
+        with watching(quiet=False, speed=5.0) as view:
+            assert isinstance(view, View)
+            assert view._pace.limit == 5
+            assert view._keyboard.there
+            modes = terminal.modes()[3]
+            assert modes & (termios.ISIG | termios.ECHO | termios.ICANON) == termios.ISIG
+            cursor, restore = interrupts._undo[len(undone) :]
+            restore()
+            assert terminal.modes() == before
+            terminal.read_until("\x1b[?25l")
+            assert cursor is show_cursor
+    assert terminal.modes() == before
+    assert interrupts._undo == undone
+    assert "\x1b[?25l" not in terminal.read_until("\x1b[?25h"), "the cursor stays"
 
 
 @pytest.fixture

@@ -4,17 +4,17 @@ import os
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from pathlib import Path
+from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
 
 from primordia import own_code
 from primordia.errors import Trouble
-from primordia.pool import board
+from primordia.pool import board, opening
 from primordia.pool.contract import Pool
 from primordia.pool.in_process import InProcess
 from primordia.pool.opening import open_pool
-from primordia.pool.workers import Workers
 from tests.counters import FIELDS
 
 ALL = np.ones(7, bool)
@@ -23,11 +23,6 @@ KINDS = pytest.mark.parametrize("workers", [0, 1])
 
 def counters(workers: int | None, cells: int = 7) -> Pool:
     return open_pool("tests.counters:Counters", {"start": 100}, FIELDS, cells, workers)
-
-
-def processes(pool: Pool) -> set[int]:
-    pool.reset(np.ones(len(pool.arrays["who"]), bool))
-    return set(pool.arrays["who"].tolist())
 
 
 @pytest.mark.parametrize("workers", [0, 2])
@@ -43,6 +38,9 @@ def test_each_cell_has_a_simulator_and_only_those_asked_for_are_stepped(workers:
         pool.step(np.arange(7) % 2 == 0)
         pool.reset(np.arange(7) == 0)
         assert pool.arrays["total"].tolist() == [100, 100, 105, 100, 105, 100, 105]
+        processes = set(pool.arrays["who"].tolist())
+        assert len(processes) == max(workers, 1)
+        assert (os.getpid() in processes) == (workers == 0)
         pool.close()  # and again at the end of the block
 
 
@@ -71,10 +69,11 @@ def test_simulators_are_in_workers_if_there_are_several_cores(
     monkeypatch: pytest.MonkeyPatch, cores: str, asked: int | None, cells: int, in_workers: int
 ) -> None:
     monkeypatch.setenv("PRIMORDIA_CORES", cores)
-    with closing(counters(asked, cells)) as pool:
-        others = processes(pool) - {os.getpid()}
-        assert len(others) == in_workers
-        assert isinstance(pool, Workers if in_workers else InProcess)
+    begun = MagicMock()
+    monkeypatch.setattr(opening, "Workers", begun)
+    pool = counters(asked, cells)
+    assert isinstance(pool, InProcess) == (in_workers == 0)
+    assert [each.args[4] for each in begun.call_args_list] == [in_workers] * (in_workers > 0)
 
 
 def fails_to_step(pool: Pool) -> None:
@@ -86,11 +85,10 @@ def fails_to_load(pool: Pool) -> None:
     pool.load([b"\xff"] * 7)
 
 
-@pytest.mark.parametrize(("workers", "fail"), [(0, fails_to_step), (1, fails_to_load)])
-def test_a_simulator_that_fails_is_one_line_of_trouble(
-    workers: int, fail: Callable[[Pool], None]
-) -> None:
-    with closing(counters(workers)) as pool:
+@pytest.mark.parametrize("fail", [fails_to_step, fails_to_load])
+def test_a_simulator_that_fails_is_one_line_of_trouble(fail: Callable[[Pool], None]) -> None:
+    """`test_workers` has one in a worker."""
+    with closing(counters(0)) as pool:
         pool.reset(ALL)
         with pytest.raises(Trouble, match=r"resume the run from its last checkpoint$") as trouble:
             fail(pool)

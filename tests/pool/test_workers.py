@@ -58,9 +58,15 @@ def test_a_worker_that_fails_is_noticed_at_once(capfd: pytest.CaptureFixture[str
     assert "failed on request" in capfd.readouterr().err
 
 
-def test_a_worker_that_is_killed_is_noticed() -> None:
+def test_states_are_restored_without_a_time_limit_and_a_killed_worker_is_noticed() -> None:
+    """A simulator without a state of its own lives a whole life again."""
     with counters() as pool:
         pool.reset(ALL)
+        states = pool.save()
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(pools, "PATIENCE", 0)
+            pool.load(states)
+        assert pool.arrays["total"].tolist() == [100] * 7
         os.kill(int(pool.arrays["who"][2]), signal.SIGKILL)
         with pytest.raises(Trouble, match="ended with status -9"):
             pool.step(ALL)
@@ -78,16 +84,6 @@ def test_a_worker_that_hangs_is_noticed_after_a_time_limit_and_killed_at_the_end
         with pytest.raises(Trouble, match=says):
             pool.step(np.ones(2, bool))
     assert [hanging.returncode, other.returncode] == [-signal.SIGKILL, 0]
-
-
-def test_states_are_restored_without_a_time_limit(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A simulator without a state of its own lives a whole life again."""
-    with counters() as pool:
-        pool.reset(ALL)
-        states = pool.save()
-        monkeypatch.setattr(pools, "PATIENCE", 0)
-        pool.load(states)
-    assert pool.arrays["total"].tolist() == [100] * 7
 
 
 def test_a_worker_that_cannot_start_is_an_error_that_says_why(
@@ -111,7 +107,7 @@ def test_a_worker_whose_run_was_killed_prints_nothing(capfd: pytest.CaptureFixtu
 
 
 def test_a_pool_without_references_is_closed() -> None:
-    pool = Workers("tests.counters:Counters", {"start": 0}, FIELDS, 2, 2)
+    pool = Workers("tests.counters:Counters", {"start": 0}, FIELDS, 2, 1)
     pool.reset(np.ones(2, bool))
     workers = pool.arrays["who"].tolist()
     del pool
@@ -147,18 +143,10 @@ def test_workers_end_with_their_run_however_it_ends() -> None:
         wait_until_gone(worker)
 
 
-def test_a_signal_that_ends_the_run_kills_its_workers() -> None:
-    """A simulator may hang, so that its worker reads no command."""
+def test_ctrl_c_ends_no_worker_and_a_signal_that_ends_the_run_kills_its_workers() -> None:
+    """A terminal sends the signal to the run's process group only. A simulator may hang, so that its
+    worker reads no command."""
     before = list(interrupts._undo)
-    with counters(workers=2) as pool:
-        (kill,) = [each for each in interrupts._undo if each not in before]
-        kill()
-        assert [worker.wait(30) for worker in pool._workers] == [-signal.SIGKILL] * 2
-    assert interrupts._undo == before
-
-
-def test_ctrl_c_ends_no_worker() -> None:
-    """The run ends its workers. A terminal sends the signal to the run's process group only."""
     with counters(workers=2) as pool:
         groups = {os.getpgid(worker.pid) for worker in pool._workers}
         assert groups == {worker.pid for worker in pool._workers}
@@ -166,6 +154,10 @@ def test_ctrl_c_ends_no_worker() -> None:
             worker.send_signal(signal.SIGINT)
         pool.reset(ALL)
         assert pool.arrays["total"].tolist() == [100] * 7
+        (kill,) = [each for each in interrupts._undo if each not in before]
+        kill()
+        assert [worker.wait(30) for worker in pool._workers] == [-signal.SIGKILL] * 2
+    assert interrupts._undo == before
 
 
 PRINTING = """
@@ -187,11 +179,10 @@ def test_a_simulator_on_the_path_gets_its_settings_and_may_print(
     (tmp_path / "printing_simulator.py").write_text(PRINTING)
     monkeypatch.syspath_prepend(tmp_path)
     fields = {"mark": ("int64", ())}
-    pool = Workers("printing_simulator:Own", {"mark": 6}, fields, 3, 2)
+    pool = Workers("printing_simulator:Own", {"mark": 6}, fields, 3, 1)
     for _ in range(3):
         pool.step(np.ones(3, bool))
     assert pool.arrays["mark"].tolist() == [6] * 3
     pool.close()
     out, err = capfd.readouterr()
-    # Workers print at once, so their lines may be mixed.
-    assert (out, sorted(err)) == ("", sorted("..\n" * 6))
+    assert (out, err) == ("", "..\n" * 3)

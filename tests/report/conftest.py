@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 import primordia
+from primordia.organism.reliving import replay
 from primordia.report import lives
 from primordia.report.content import of_run
 from primordia.report.page import page as page_of
@@ -52,7 +53,8 @@ def cart(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def cart_page(cart: Path) -> Path:
     """Write the page of a run, with short films."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(lives, "PART", 1.0)
+        patch.setattr(lives, "PART", 0.2)
+        patch.setattr(replay, "STILL", 0.1)
         return primordia.load(cart).report()
 
 

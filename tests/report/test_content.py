@@ -16,6 +16,7 @@ from primordia.report.content import _numbers, of_experiment, of_run
 from primordia.report.facts import commands, facts
 from primordia.report.words import setting
 from primordia.runs.archive import Archive
+from primordia.settings.limits import ForkedFrom
 from tests.report.conftest import TORUS
 from tests.report.unpacked import all_unpacked
 from tests.synthetic import worlds_of
@@ -238,6 +239,10 @@ def test_a_page_lists_all_settings_that_are_not_empty() -> None:
     listed = facts(invented(config=grown), NUMBERS)
     assert listed["settings"]["ancestors"] == "['best.npz']"
     assert "/home" not in listed["toml"]
+    assert listed["commands"] == ["primordia verify run"]
+    forked = config(TORUS).model_copy(update={"fork": ForkedFrom(run="/home/me/torus", tick=400)})
+    listed = facts(invented(config=forked), NUMBERS)
+    assert listed["settings"]["fork.run"] == "torus"
     assert listed["commands"] == ["primordia verify run"]
 
 

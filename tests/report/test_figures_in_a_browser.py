@@ -12,10 +12,10 @@ from selenium.webdriver.common.actions.wheel_input import ScrollOrigin
 from selenium.webdriver.common.keys import Keys
 
 from primordia.runs.archive import Archive
-from tests.report.browser import PHONE, Page, differ
+from tests.report.browser import Page
 from tests.report.unpacked import unpacked
 
-CANVAS = ".ground canvas"
+CANVAS, TOLD = ".ground canvas", ".tree + .readout"
 
 
 @pytest.fixture
@@ -62,11 +62,20 @@ def test_a_chart_shows_values_and_zooms_by_mouse_keys_and_buttons(
 def test_space_time_zooms_and_moves_by_wheel_keys_mouse_and_buttons(
     cart_page: Path, page: Page
 ) -> None:
+    """The wheel scrolls the page until the picture is chosen."""
     page.open_file(cart_page)
     canvas = page.one(CANVAS)
+    whole = page.picture(canvas)
+    page.script("arguments[0].scrollIntoView({block: 'center', behavior: 'instant'})", canvas)
+    origin, above = ScrollOrigin.from_element(canvas), page.script("return scrollY")
+    ActionChains(page.driver).scroll_from_origin(origin, 0, 100).perform()
+    page.until(lambda: page.script("return scrollY") > above)
+    assert page.picture(canvas) == whole
     page.click(canvas, 0.02, 0.02)  # outside of the picture: the canvas gets the keys alone
-    whole = page.pixels(canvas)
-    turn = ActionChains(page.driver).scroll_from_origin(ScrollOrigin.from_element(canvas), 0, -300)
+    page.drag(canvas, 0.3, 0.5, 0.7)
+    assert page.text(".organism h3") == "No organism is chosen", "a drag is no click"
+    whole = page.picture(canvas)
+    turn = ActionChains(page.driver).scroll_from_origin(origin, 0, -300)
     ways: dict[str, Any] = {
         "wheel": turn.perform,
         "key": lambda: page.keys(canvas, "+"),
@@ -74,46 +83,14 @@ def test_space_time_zooms_and_moves_by_wheel_keys_mouse_and_buttons(
     }
     for name, zoom in ways.items():
         zoom()
-        page.until(lambda: differ(page.pixels(canvas), whole))
-        near = page.pixels(canvas)
+        page.until(lambda: page.picture(canvas) != whole)
+        near = page.picture(canvas)
         page.keys(canvas, Keys.ARROW_DOWN)
-        assert differ(page.pixels(canvas), near), name
+        moved = page.picture(canvas)
         page.drag(canvas, 0.3, 0.6)
+        assert len({near[0], moved[0], page.picture(canvas)[0]}) == 3, name
         page.keys(canvas, "0")
-        assert not differ(page.pixels(canvas), whole), name
-    assert page.text(".organism h3") == "No organism is chosen", "a drag is no click"
-
-
-def test_two_fingers_zoom_the_picture_and_a_tap_chooses(cart_page: Path, page: Page) -> None:
-    page.size(*PHONE, mobile=True)
-    page.open_file(cart_page)
-    canvas = page.one(CANVAS)
-    page.script("arguments[0].scrollIntoView({block: 'center'})", canvas)
-    whole = page.pixels(canvas)
-    box = page.script(
-        "const {left, top} = arguments[0].getBoundingClientRect(); return [left, top]", canvas
-    )
-    points = [[(150 - apart, 200), (150 + apart, 200)] for apart in (20, 35, 50, 65, 80)]
-    page.touch("touchStart", box, points[0])
-    for each in points[1:]:
-        page.touch("touchMove", box, each)
-    page.touch("touchEnd", box, [])
-    page.until(lambda: differ(page.pixels(canvas), whole))
-    assert page.text(".organism h3") == "No organism is chosen", "a pinch is no tap"
-    page.touch("touchStart", box, [(150, 200)])
-    page.touch("touchEnd", box, [])
-    page.until(lambda: page.text(".organism h3") != "No organism is chosen")
-
-
-def test_the_page_scrolls_by_the_wheel_until_the_picture_is_chosen(
-    cart_page: Path, page: Page
-) -> None:
-    page.open_file(cart_page)
-    canvas = page.one(CANVAS)
-    whole = page.pixels(canvas)
-    ActionChains(page.driver).scroll_by_amount(0, 300).perform()
-    page.until(lambda: page.script("return scrollY") > 0)
-    assert not differ(page.pixels(canvas), whole)
+        assert page.picture(canvas) == whole, name
 
 
 @pytest.mark.slow
@@ -122,12 +99,11 @@ def test_a_film_moves_by_keys_plays_and_shows_the_organism_of_a_cell(
 ) -> None:
     page.open_file(torus_page)
     canvas, slider = page.one(".film canvas"), page.one(".film input")
-    last = page.pixels(canvas)
+    last = page.picture(canvas)
     assert page.script("return arguments[0].width", canvas) == 6
     page.keys(slider, Keys.HOME)
     assert page.text(".film .readout").startswith("birth 1,")
-    first = page.pixels(canvas)
-    assert differ(first, last)
+    assert page.picture(canvas) != last
     page.keys(slider, Keys.ARROW_RIGHT, Keys.ARROW_RIGHT)
     third = page.text(".film .readout")
     assert third.startswith("birth 3,")
@@ -176,19 +152,6 @@ def test_each_picture_of_a_film_has_its_words_and_its_colours(
             np.testing.assert_allclose(pixel, expected, atol=1.5)
 
 
-def test_the_phylogeny_is_read_by_mouse_and_keys(torus_page: Path, page: Page) -> None:
-    page.open_file(torus_page)
-    page.keys(page.one(".tree"), Keys.ARROW_DOWN, Keys.ARROW_DOWN)
-    readout = page.text(".tree + .readout")
-    match = re.match(r"organism ([\d,]+), born at tick [\d,]+, alive, ", readout)
-    assert match, readout
-    page.until(lambda: page.all(".tree .on"))
-    page.keys(page.one(".tree"), Keys.ENTER)
-    assert page.text(".organism h3") == f"Organism {match[1]}"
-    page.hover(page.all(".tree .hit")[3], 0.5, 0.5)
-    page.until(lambda: page.text(".tree + .readout") != readout)
-
-
 def test_the_phylogeny_is_coloured_by_a_trait(torus_page: Path, page: Page) -> None:
     """Equal ratios are equally far apart in the scale, and the key has its ends."""
     page.open_file(torus_page)
@@ -214,11 +177,12 @@ def test_the_phylogeny_is_coloured_by_a_trait(torus_page: Path, page: Page) -> N
     assert page.script(choose, "-1") == [-1, 2]
     assert page.text(".scale") == ""
     assert page.script("return traitText({}, {})") == ""
+    page.script("document.body.lastChild.remove()")
+    is_drawn_in_colours_of_traits(page)
 
 
-def test_a_phylogeny_with_traits_is_drawn_in_their_colours(torus_page: Path, page: Page) -> None:
-    """A trait is chosen in the section of a world to whose phylogeny traits have been added."""
-    page.open_file(torus_page)
+def is_drawn_in_colours_of_traits(page: Page) -> None:
+    """Choose a trait in the section of a world to whose phylogeny traits have been added."""
     added = page.driver.execute_async_script(
         "const done = arguments[arguments.length - 1];"
         "const content = JSON.parse(document.getElementById('content').textContent);"
@@ -248,65 +212,72 @@ def test_a_phylogeny_with_traits_is_drawn_in_their_colours(torus_page: Path, pag
     assert ", leg x " in page.text(".tree + .readout")
 
 
-def test_the_phylogeny_is_drawn_over_births_and_keys_walk_through_its_living(
-    world: dict[str, Any], page: Page
-) -> None:
-    tree = world["tree"]
-    nodes = tree["nodes"]
-    width = page.script("return document.querySelector('.tree').clientWidth")
-    gap = min(max(420 / tree["shown"], 3), 14)
+def bars_of(world: dict[str, Any], wide: float) -> list[Any]:
+    """Return where the line of each node of the phylogeny belongs in a picture of some width."""
+    gap = min(max(420 / world["tree"]["shown"], 3), 14)
 
     def x(place: float) -> float:
-        return 4 + place / world["ground"]["births"] * (width - 8)
+        return 4 + place / world["ground"]["births"] * (wide - 8)
 
-    def y(level: int) -> float:
-        return 24 + (level + 0.5) * gap
+    return [
+        pytest.approx(
+            [x(node["start"]), 24 + (node["level"] + 0.5) * gap,
+             max(x(node["stop"]), x(node["start"]) + 1)]
+        )
+        for node in world["tree"]["nodes"]
+    ]  # fmt: skip
 
+
+PRESS = """
+const event = new KeyboardEvent('keydown', { key: arguments[0] });
+document.querySelector('.tree').dispatchEvent(event);
+return [document.querySelector('.tree + .readout').textContent,
+  [...document.querySelectorAll('.tree .bar.on')].map((each) => Number(each.dataset.node))];
+"""
+
+
+def test_the_phylogeny_is_drawn_over_births_and_read_by_keys_and_mouse(
+    world: dict[str, Any], page: Page
+) -> None:
+    nodes, wide = (
+        world["tree"]["nodes"],
+        page.script("return document.querySelector('.tree').clientWidth"),
+    )
     bars = page.script(
         "return [...document.querySelectorAll('.tree .bar')].map((bar) => bar.getAttribute('d')"
         ".match(/[-\\d.]+/g).map(Number))"
     )
-    for node, bar in zip(nodes, bars, strict=True):
-        stop = max(x(node["stop"]), x(node["start"]) + 1)
-        assert bar == pytest.approx([x(node["start"]), y(node["level"]), stop])
-    living = sorted((node["level"], at) for at, node in enumerate(nodes) if node["alive"])
-    press = (
-        "const event = new KeyboardEvent('keydown', { key: arguments[0] });"
-        " document.querySelector('.tree').dispatchEvent(event);"
-        " return [document.querySelector('.tree + .readout').textContent,"
-        " [...document.querySelectorAll('.tree .bar.on')].map((each) => Number(each.dataset.node))]"
-    )
-    order = [at for _, at in living]
+    assert bars == bars_of(world, wide)
+    order = [at for _, at in sorted((n["level"], at) for at, n in enumerate(nodes) if n["alive"])]
     keys = ["ArrowDown"] * (len(order) + 1) + ["ArrowUp"] * (len(order) + 1)
     walk = [*order, order[-1], *order[-2::-1], order[0], order[0]]
     for key, at in zip(keys, walk, strict=True):
-        words, marked = page.script(press, key)
-        assert words.startswith(
-            f"organism {nodes[at]['number']:,}, born at tick {nodes[at]['born']:,}, "
-        )
+        words, marked = page.script(PRESS, key)
+        about = nodes[at]
+        assert words.startswith(f"organism {about['number']:,}, born at tick {about['born']:,}, ")
         line = {at}
         while nodes[at]["parent"] >= 0:
             line.add(at := nodes[at]["parent"])
         assert set(marked) == line
-
-
-def test_a_line_of_descent_stays_marked_when_the_tree_is_drawn_again(
-    torus_page: Path, page: Page
-) -> None:
-    page.open_file(torus_page)
-    page.keys(page.one(".tree"), Keys.ARROW_DOWN)
-    marked = "return [...document.querySelectorAll('.tree .on')].map((each) => each.dataset.node)"
-    line = page.until(lambda: page.script(marked))
-    drawn = page.one(".tree svg")
-    page.size(900, 900)
-    page.until(lambda: page.one(".tree svg") != drawn)
-    assert page.script(marked) == line
+    page.keys(page.one(".tree"), Keys.ARROW_DOWN, Keys.ENTER)
+    assert page.text(".organism h3") == f"Organism {nodes[order[1]]['number']:,}"
+    words = page.text(TOLD)
+    page.hover(page.all(".tree .hit")[3], 0.5, 0.5)
+    page.until(lambda: page.text(TOLD) != words)
+    assert page.complaints() == []
 
 
 def test_a_choice_of_world_ends_the_zoom_and_the_choice_of_an_organism(
     torus_page: Path, page: Page
 ) -> None:
+    """A marked line of descent stays marked when the tree is drawn again."""
     page.open_file(torus_page)
+    page.keys(page.one(".tree"), Keys.ARROW_DOWN)
+    marked = "return [...document.querySelectorAll('.tree .on')].map((each) => each.dataset.node)"
+    line, drawn = page.until(lambda: page.script(marked)), page.one(".tree svg")
+    page.size(900, 900)
+    page.until(lambda: page.one(".tree svg") != drawn)
+    assert page.script(marked) == line
     page.one("#number").send_keys("7", Keys.ENTER)
     assert page.text(".organism h3") == "Organism 7"
     page.script("document.querySelectorAll('.ground .zoom button')[1].click()")
@@ -314,10 +285,10 @@ def test_a_choice_of_world_ends_the_zoom_and_the_choice_of_an_organism(
     before = page.one("#ground")
     options = page.all("#world option")
     assert [each.text for each in options] == ["seed 5", "seed 6", "seed 7"]
-    pixels = page.pixels(before)
+    picture = page.picture(before)
     options[1].click()
     page.until(lambda: page.one("#ground") != before)
-    page.until(lambda: differ(page.pixels(page.one(CANVAS)), pixels))
+    page.until(lambda: page.picture(page.one(CANVAS)) != picture)
     assert page.text(".organism h3") == "No organism is chosen"
     page.wait_for_figures()
     assert not page.script("return document.querySelector('#ground').classList.contains('zoomed')")

@@ -10,7 +10,7 @@ from primordia.law.world import BirthCause, Cause
 from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
 from tests.pedigrees import line_to
-from tests.report.browser import Page, differ
+from tests.report.browser import Page
 
 ORIGINS = {
     BirthCause.FOUNDER: "a founder",
@@ -66,7 +66,7 @@ def test_a_click_on_a_cell_shows_its_organism_and_lights_its_line(
     lives = Archive(cart).lives
     page.open_file(cart_page)
     canvas = page.one(".ground canvas")
-    before = page.pixels(canvas)
+    before = page.picture(canvas)
     page.hover(canvas, 0.5, 0.7)
     readout = re.fullmatch(
         r"cell (\d+), birth ([\d,]+), tick ([\d,]+): organism ([\d,]+), age ([\d,]+)",
@@ -80,15 +80,12 @@ def test_a_click_on_a_cell_shows_its_organism_and_lights_its_line(
     assert tick - lives.born[row] == age
     page.click(canvas, 0.5, 0.7)
     assert page.text(".organism h3") == f"Organism {number:,}"
-    assert differ(before, page.pixels(canvas)), "its line is lit"
+    assert page.picture(canvas) != before, "its line is lit"
     assert page.script("return document.activeElement === arguments[0]", canvas)
+    are_found_by_number_and_by_their_relatives(lives, page)
 
 
-def test_organisms_are_found_by_number_and_by_their_relatives(
-    cart: Path, cart_page: Path, page: Page
-) -> None:
-    lives = Archive(cart).lives
-    page.open_file(cart_page)
+def are_found_by_number_and_by_their_relatives(lives: Lives, page: Page) -> None:
     row = int(np.flatnonzero(lives.parent_row >= 0)[-1])
     page.one("#number").send_keys(str(lives.id[row]), Keys.ENTER)
     assert page.text(".organism h3") == f"Organism {lives.id[row]:,}"

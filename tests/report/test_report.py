@@ -90,6 +90,7 @@ def test_the_commands_and_the_settings_in_a_page_live_the_run_again(
     assert shown["digests"] == [{"seed": "0", "digest": world["digest"]}]
 
 
+@pytest.mark.slow  # `test_content.py` has the settings and commands of a fork
 def test_a_fork_is_verified_since_it_needs_its_directory(torus: Path, tmp_path: Path) -> None:
     primordia.load(torus).fork(400, tmp_path / "fork")
     page = content_of(primordia.load(tmp_path / "fork").report())

@@ -3,9 +3,7 @@
 import http.client
 import json
 import shutil
-import signal
 import socket
-import subprocess
 import threading
 from collections.abc import Generator, Iterator
 from contextlib import contextmanager
@@ -17,6 +15,7 @@ from urllib.parse import urlsplit
 import pytest
 
 import primordia
+from primordia import interrupts
 from primordia.report import watched
 from primordia.report.content import of_run
 from primordia.report.page import embedded
@@ -24,7 +23,6 @@ from primordia.report.server import HERE, QUIET, Server
 from primordia.report.watched import Watched
 from primordia.runs import loop
 from primordia.runs.archive import Archive
-from tests import commands
 from tests.commands import complains, here
 from tests.report.browser import Page
 
@@ -214,21 +212,20 @@ def test_a_port_in_use_is_one_line(server: Server, torus: Path) -> None:
     complains(here("watch", torus, "--port", 70_000), 2, "--port")
 
 
-def address_of(process: subprocess.Popen[str]) -> str:
-    assert process.stdout is not None
-    return process.stdout.readline().split()[0]
+def test_the_command_says_where_the_page_is_and_at_its_end_that_the_run_is_unchanged(
+    torus: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    last: list[str] = []
 
+    def watch(open_: Any, port: int, begun: Any) -> None:
+        begun(f"http://{HERE}:{port}/")
+        last.append(interrupts._last_words[-1]())
 
-def test_ctrl_c_ends_it_at_once_with_one_line(torus: Path) -> None:
-    with commands.begin("watch", torus, "--port", 0) as process:
-        address = urlsplit(address_of(process))
-        connection = http.client.HTTPConnection(HERE, address.port or 0, timeout=20)
-        connection.request("GET", "/events")
-        assert connection.getresponse().readline().startswith(b"data: ")
-        process.send_signal(signal.SIGINT)
-        _, said = process.communicate(timeout=20)
-        connection.close()
-    assert (process.returncode, said) == (130, "Stopped watching; the run is unchanged\n")
+    monkeypatch.setattr("primordia.report.server.watch", watch)
+    done = here("watch", torus, "--port", 7)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith(f"http://{HERE}:7/ shows {torus};")
+    assert last == ["Stopped watching; the run is unchanged"]
 
 
 def test_the_page_in_a_browser_shows_what_is_new(run: Path, page: Page) -> None:

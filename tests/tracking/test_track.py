@@ -50,28 +50,29 @@ def single(rows: list[Row]) -> list[Row]:
     ]
 
 
-def shows(folder: Path, run: Path, prefix: str = "") -> None:
-    """Assert that both dashboards in a folder show the rows of a run, and each once."""
-    runs = offline_runs(folder)
+def charts(folder: Path, run: Path, prefix: str = "") -> None:
+    """Assert that TensorBoard shows the rows of a run from a folder, and each once."""
     for seed, rows in expected(run).items():
         assert rows
         assert event_rows(folder / f"{prefix}seed-{seed}") == single(rows)
+
+
+def shows(folder: Path, run: Path, prefix: str = "") -> None:
+    """Assert that both dashboards in a folder show the rows of a run, and each once."""
+    charts(folder, run, prefix)
+    runs = offline_runs(folder)
+    for seed, rows in expected(run).items():
         assert runs[f"{prefix}seed-{seed}"][1] == rows
 
 
 def test_both_dashboards_show_the_metrics_of_each_world(run: Path, tmp_path: Path) -> None:
+    """Another call replaces what was written, also after the run has been moved."""
     done = here("track", run, "--tensorboard", tmp_path, "--wandb", tmp_path)
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines() == [
         f"Look at the metrics with: tensorboard --logdir {tmp_path}",
         f"Look at the metrics with: wandb sync {tmp_path}/wandb/offline-run-*",
     ]
-    shows(tmp_path, run)
-
-
-def test_another_call_replaces_what_was_written(run: Path, tmp_path: Path) -> None:
-    for _ in range(2):
-        primordia.load(run).track(tensorboard=tmp_path, wandb=tmp_path)
     shows(tmp_path, run)
     moved = shutil.copytree(run, tmp_path / "moved")
     primordia.load(moved).track(tensorboard=tmp_path, wandb=tmp_path)
@@ -108,9 +109,9 @@ def test_rows_that_a_run_repeats_after_a_crash_are_written_once(tmp_path: Path) 
             loop.resume(path, {"ticks": min(100 + 25 * len(counts), last)})
         return Sources({"": [path]}, primordia.load(path).info()["worlds"][0]["ticks"] < last)
 
-    track(look, "run", tmp_path, tmp_path, follow=True, every=AT_ONCE, seen=counts.append)
+    track(look, "run", tmp_path, follow=True, every=AT_ONCE, seen=counts.append)
     assert counts == [30, 36, 45, 45, 60]
-    shows(tmp_path, path)
+    charts(tmp_path, path)
 
 
 def test_following_ends_when_the_run_has_stopped(run: Path, tmp_path: Path) -> None:
@@ -124,9 +125,9 @@ def test_following_ends_when_the_run_has_stopped(run: Path, tmp_path: Path) -> N
                 signal.raise_signal(signal.SIGINT)
 
         with pytest.raises(KeyboardInterrupt):
-            primordia.load(path).track(tmp_path, tmp_path, follow=True, every=AT_ONCE, seen=seen)
+            primordia.load(path).track(tmp_path, follow=True, every=AT_ONCE, seen=seen)
     assert looks == [30] * 3
-    shows(tmp_path, path)
+    charts(tmp_path, path)
     done = here("track", path, "--tensorboard", tmp_path, "--follow", "--every", "999")
     assert done.returncode == 0, done.stderr
 

@@ -26,7 +26,7 @@ def interrupt_after(run: Path, ticks: int) -> None:
     """Resume a run to TICKS, but press Ctrl-C after `ticks`."""
 
     def press(status: loop.Status) -> None:
-        if int(status.engine.state.world.worlds.tick.lo[0]) > ticks:
+        if np.asarray(status.engine.state.world.worlds.tick.lo)[0] > ticks:
             signal.raise_signal(signal.SIGINT)
 
     with pytest.raises(KeyboardInterrupt):

@@ -244,7 +244,11 @@ def tried(made: Path, folder: Path, seed: int) -> int:
     return done.returncode
 
 
-@pytest.mark.parametrize("seed", range(len(CHANGES)))
+SEEDS = (35, 1, 23, 10, 18, 5, 34)
+"""Seeds of one run for each kind of change, with commands that compile nothing."""
+
+
+@pytest.mark.parametrize("seed", SEEDS)
 def test_a_forged_run_is_read_or_refused(made: Path, tmp_path: Path, seed: int) -> None:
     tried(made, tmp_path, seed)
 

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from primordia import files, interrupts
+from primordia.cli import commands
 from primordia.runs.directory import VERSIONS
 from tests.commands import begin, environment, here
 from tests.trouble import SMALL, TICKS, goes_on
@@ -179,36 +180,24 @@ def test_a_signal_ends_work_that_has_deferred_one_for_two_seconds(
     assert (done.returncode, done.stdout, done.stderr) == outcome
 
 
-OVERTAKEN = """
-import atexit, os, signal, sys, threading
-from unittest.mock import patch
-from primordia import interrupts
-from primordia.cli import commands
+def test_a_command_that_a_signal_ends_waits_for_its_end_before_it_says_what_failed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    said: list[object] = []
 
-undone, at_the_end = threading.Event(), threading.Event()
-atexit.register(at_the_end.set)
-signal.pause = lambda: (at_the_end.set(), threading.Event().wait())
+    def fail(**_: object) -> None:
+        interrupts._ending.append(True)
+        raise OSError("its file is gone")
 
-def undo():
-    undone.set()
-    at_the_end.wait()
+    def pause() -> None:
+        said.append("waited")
+        interrupts._ending.clear()
 
-def fail(**_):
-    with interrupts.before_end(undo):
-        os.kill(os.getpid(), signal.SIGINT)
-        undone.wait()
-    raise OSError("its file is gone")
-
-interrupts.end_commands_at_once()
-with patch.object(commands, "commands", fail):
-    sys.exit(commands.execute())
-"""
-"""A command whose main thread gets to its end before the thread that ends the process."""
-
-
-def test_a_command_that_a_signal_ends_says_nothing_of_what_failed_meanwhile() -> None:
-    done = process(OVERTAKEN)
-    assert (done.returncode, done.stdout, done.stderr) == (interrupts.STATUS, "", "Stopped\n")
+    monkeypatch.setattr(signal, "pause", pause)
+    monkeypatch.setattr(commands, "commands", fail)
+    monkeypatch.setattr(commands, "report", lambda error: said.append(str(error)))
+    assert commands.execute() == 1
+    assert said == ["waited", "its file is gone"]
 
 
 LAST = """

@@ -20,7 +20,7 @@ from tests.commands import complains, here
 from tests.trouble import newest, recount, reseal, rewrite
 
 READING = ["info", "plot", "report", "film", "export", "ancestors", "lineages", "track"]
-QUICK = {"info", "plot", "report", "ancestors"}
+QUICK = {"info", "report", "ancestors"}
 
 
 def tried(command: str, run: Path, folder: Path) -> Any:

@@ -11,6 +11,7 @@ from functools import partial
 from itertools import count
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import pytest
 import tomli_w
@@ -92,7 +93,7 @@ WORDS = (
 """Commands with a word of any characters, or that write a file or folder with them in its name."""
 
 
-@settings(max_examples=80)
+@settings(max_examples=30)
 @given(ODD_WORDS, st.sampled_from(WORDS))
 @example("\udcff", ("run", "{}"))
 @example("\x1b\udcff", WORDS[-1])
@@ -120,7 +121,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("place")
 
 
-@settings(max_examples=6)
+@settings(max_examples=2)
 @given(ODD)
 @example("\0")
 @example("\x1b[2J\u202e")
@@ -198,25 +199,38 @@ class Failing(io.RawIOBase):
         return len(data)
 
 
-@pytest.mark.parametrize(("error", "after"), [(errno.EPIPE, 100), (errno.ENOSPC, 0)])
-def test_a_run_whose_output_fails_stops_with_a_checkpoint(
-    tmp_path: Path, through: str, monkeypatch: pytest.MonkeyPatch, error: int, after: int
-) -> None:
-    """The reader ends early, as `| head -1` does, or a log's disk is full."""
-    run, loud = tmp_path / "run", [word for word in SMALL if word != "--quiet"]
-    monkeypatch.setattr("primordia.live.watching.Plain.EVERY", 0.0)
-    monkeypatch.setattr(
-        sys, "argv", ["primordia", "run", *loud, "--ticks", str(TICKS), "--out", str(run)]
-    )
+def executed(error: int, after: int, *words: object) -> tuple[int, str]:
+    """Execute a command whose output fails from a byte on -> its status, and what stderr gets."""
     output = Printable(io.BufferedWriter(Failing(error, after)), "utf-8", "backslashreplace")
-    monkeypatch.setattr("primordia.cli.commands.flush", lambda: None)
     messages = io.StringIO()
-    with redirect_stdout(output), redirect_stderr(messages):
-        assert execute() == 1
-    assert messages.getvalue() == (
-        f"primordia: the output cannot be written: {os.strerror(error)}."
-        f" Stopped and saved. Go on with: primordia resume {run}\n"
-    )
-    goes_on(run, through)
+    with (
+        patch.object(sys, "argv", ["primordia", *map(str, words)]),
+        patch.object(commands, "flush"),
+        redirect_stdout(output),
+        redirect_stderr(messages),
+    ):
+        status = execute()
     with suppress(OSError):
         output.detach()
+    return status, messages.getvalue()
+
+
+def test_a_run_whose_output_fails_stops_with_a_checkpoint(
+    tmp_path: Path, through: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The reader ends early, as `| head -1` does."""
+    run, loud = tmp_path / "run", [word for word in SMALL if word != "--quiet"]
+    monkeypatch.setattr("primordia.live.watching.Plain.EVERY", 0.0)
+    words = ("run", *loud, "--ticks", TICKS, "--out", run)
+    assert executed(errno.EPIPE, 100, *words) == (
+        1,
+        "primordia: the output cannot be written: Broken pipe. Stopped and saved. Go on with:"
+        f" primordia resume {run}\n",
+    )
+    goes_on(run, through)
+
+
+def test_a_command_whose_output_fails_says_so_unless_its_reader_has_gone(half: Path) -> None:
+    assert executed(errno.EPIPE, 0, "info", half) == (1, "")
+    full = "primordia: standard output: No space left on device\n"
+    assert executed(errno.ENOSPC, 0, "info", half) == (1, full)
