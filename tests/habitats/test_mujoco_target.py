@@ -133,3 +133,19 @@ def test_a_target_moves_only_if_a_living_body_reaches_it_at_the_end_of_a_tick() 
             moves += moved
     assert 20 < moves < 140
     habitat.close()
+
+
+def test_targets_of_saved_robots_move_to_the_same_places() -> None:
+    original, loaded = (of_task("Reacher-forager", 100) for _ in range(2))
+    born(original, 100)
+
+    def places(habitat: MuJoCo) -> np.ndarray:
+        for _ in range(10):
+            habitat.step(np.full((100, 2), 0.05, np.float32), np.ones(100, bool))
+        return habitat._bodies.views["qpos"].copy()
+
+    before, saved = places(original), original.save()
+    after = places(original)
+    assert (after[:, 2:] != before[:, 2:]).any()
+    loaded.load(saved)
+    np.testing.assert_array_equal(places(loaded), after)
