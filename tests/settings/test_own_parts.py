@@ -55,7 +55,7 @@ class Still(Mutation):
 class Lake(HostHabitat, Settings):
     senses_size: int = 2
     action: Continuous = Continuous(1)
-    words: int = 3
+    words: int = 1
 
     @property
     def versions(self):
@@ -86,7 +86,7 @@ TABLES: dict[str, dict[str, dict[str, str]]] = {
 """The table that chooses each part."""
 
 SENSE, ACTION, WORDS = "return bodies\n", "Discrete = Discrete(2)", "words: int = 1"
-OF_LAKE = "words: int = 3"
+OF_LAKE = "action: Continuous = Continuous(1)"
 THINK = """return memory, (genome["output"] * senses[:, None]).sum(axis=2)"""
 BLOCKS = """{"output": (outputs, senses)}"""
 INHERIT = "return family.parents, jnp.zeros(len(family.parents), bool)"
