@@ -143,6 +143,17 @@ def test_jax_that_the_user_started_is_left_alone_and_the_run_says_so(
     assert printed.split(maxsplit=2)[1:] == ["native"]
 
 
+def test_a_run_without_optimisations_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its bits are others."""
+    monkeypatch.delenv("XLA_FLAGS", raising=False)
+    usual, name = device.instruction_set(), "jax_disable_most_optimizations"
+    jax.config.update(name, True)
+    try:
+        assert device.instruction_set() == f"{usual} {name}"
+    finally:
+        jax.config.update(name, False)
+
+
 @pytest.mark.parametrize(
     ("machine_", "flags", "cpu", "recorded"),
     [

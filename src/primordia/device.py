@@ -20,6 +20,7 @@ from primordia.errors import InputError
 PACKAGES = ("primordia", "jax", "jaxlib", "numpy")
 CPU = "cpu"
 ISA_FLAG = "--xla_cpu_max_isa"
+UNOPTIMISED = "jax_disable_most_optimizations"
 SAME_BITS = ("--xla_dump", "--xla_force_host_platform_device_count")
 """Prefixes of XLA's flags that change no bit of a result. Any other flag may change bits."""
 
@@ -151,6 +152,9 @@ def instruction_set() -> str:
     """Return the architecture, the limit of XLA's vector instructions, and flags that may change bits."""
     flags = os.environ.get("XLA_FLAGS", "").split()
     others = sorted(flag for flag in flags if not flag.startswith((ISA_FLAG, *SAME_BITS)))
+    # Without optimisations XLA's tanh has other bits.
+    if jax.config.values.get(UNOPTIMISED):
+        others.append(UNOPTIMISED)
     machine = platform.machine()
     if machine not in ("x86_64", "AMD64"):
         return " ".join([machine, *others])
