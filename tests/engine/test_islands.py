@@ -126,6 +126,12 @@ def test_equal_islands_are_a_plain_world() -> None:
             np.testing.assert_array_equal(values, other[column], column)
 
 
+@pytest.mark.slow
+def test_one_island_is_a_plain_world() -> None:
+    one = config({**MILL, "habitat": {**MILL["habitat"], "islands": [{"name": "only"}]}})
+    assert Lived(one, 200).digests() == Lived(config(MILL), 200).digests()
+
+
 def test_games_are_played_on_the_island_of_each_player(run: Path) -> None:
     """They are the games of a plain world that is like the island everywhere."""
     opened = Archive(run)

@@ -1,13 +1,9 @@
-"""Strange worlds keep the promises: under any chunk, interruption and environment, and on the host.
+"""Strange worlds keep the promises: under any chunk and interruption, and on the host.
 
 Each promise is tested with one world that has everything, and by `make slow` with further worlds.
 """
 
-import json
-import os
 import signal
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -28,8 +24,6 @@ from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from primordia.runs.digest import digests as digests_of
-from tests import commands
-from tests.goldens import POLES
 from tests.history.test_rebuilding import assert_rebuilt
 from tests.strange import BLOCKS, GIVING, PASSING, QUIET, SEEDS, STRANGE, STRANGER, TICKS
 from tests.test_goldens import assert_lived_as_it_did
@@ -329,48 +323,3 @@ def test_lives_and_games_follow_from_such_seeds(run: Path) -> None:
     assert one.lived.course.tolist() != other.lived.course.tolist()
     (again,) = evaluate(opened, [(0, 1)], games=3, ticks=60)
     assert again.to_dict() == other.to_dict()
-
-
-PROGRAM = f"""
-import os, sys
-if hasattr(os, "sched_setaffinity"):
-    os.sched_setaffinity(0, [min(os.sched_getaffinity(0))])
-from {__name__} import SEEDS, anywhere, described
-print(described(anywhere(sys.argv[1], seed=SEEDS[0], seeds=2), 1))
-"""
-ANYWHERE: dict[str, tuple[Any, dict[str, Any]]] = {
-    "poles": ("CartPole-survival", POLES),
-    "strange": (STRANGE, {}),
-}
-
-
-def anywhere(name: str, **seeds: int) -> Lived:
-    base, settings = ANYWHERE[name]
-    return Lived(config(base, **{**settings, **seeds}), TICKS)
-
-
-def described(lived: Lived, world: int) -> str:
-    """Return the digest of a world and the settings that both worlds share, as one line."""
-    settings = lived.config.model_copy(update={"seed": 0, "seeds": 1}).to_toml()
-    return json.dumps([lived.digests()[world], settings])
-
-
-ENVIRONMENT = {
-    "XLA_FLAGS": f"{os.environ['XLA_FLAGS']} --xla_cpu_multi_thread_eigen=false", "OMP_NUM_THREADS": "1",
-    "LANG": "C", "LC_ALL": "C", "TZ": "Asia/Kathmandu", "PYTHONHASHSEED": "7", "PYTHONUTF8": "0",
-    "COLUMNS": "20", "PYTHONOPTIMIZE": "2",
-}  # fmt: skip
-
-
-@pytest.mark.slow  # `test_goldens.py` has worlds that lived in other environments
-@pytest.mark.parametrize("name", ["poles", "strange"])
-def test_a_world_is_the_same_beside_another_on_one_thread_and_in_any_environment(
-    name: str, tmp_path: Path
-) -> None:
-    """Another process compiles everything itself, for two worlds and, on Linux, for one processor."""
-    variables = commands.environment() | commands.AFRESH | ENVIRONMENT
-    done = subprocess.run(
-        [sys.executable, "-c", PROGRAM, name], env=variables, cwd=tmp_path, capture_output=True,
-        text=True, check=True, encoding="utf-8",
-    )  # fmt: skip
-    assert done.stdout.strip() == described(anywhere(name, seed=SEEDS[1], seeds=1), 0)

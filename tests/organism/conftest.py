@@ -62,8 +62,8 @@ def poles(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def learners(tmp_path_factory: pytest.TempPathFactory) -> Archive:
     """Make a world of plastic brains, whose buttons swap at the ages 6, 17 and 40.
 
-    Nothing has lived in it. Its records are told that all were born in tick 10 and are alive in tick 65,
-    as founder 7 would be, whose pole falls through late.
+    Its records are changed: all organisms are born in tick 10 and alive in tick 65. Founder 7 can be,
+    since its pole may fall.
     """
     path = tmp_path_factory.mktemp("learners") / "run"
     habitat = {**LEARNERS["habitat"], "angle_limit": 180.0, "track_limit": 1e9}

@@ -114,7 +114,7 @@ def test_islands_in_a_browser(shore_page: Path, page: Page) -> None:
 
 
 def test_islands_of_the_space_time_picture(shore_page: Path, page: Page) -> None:
-    """A line in the island's colour is above its cells, which are told with their islands."""
+    """Above the cells of an island is a line in its colour. The words of a cell name its island."""
     page.open_file(shore_page)
     canvas = page.one("#ground")
     pixels = page.pixels(canvas)[..., :3]
