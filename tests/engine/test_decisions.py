@@ -33,7 +33,7 @@ def steps() -> _Steps:
     """Return the steps of a law whose worlds are not packed."""
     law: Any = SimpleNamespace(worlds=3, per_cell=lambda each: jnp.repeat(each, CELLS))
     form: Any = SimpleNamespace(release=lambda world, bulk: world, hold=lambda world: world)
-    return _Steps(law, form, 5)
+    return _Steps(law, form)
 
 
 @pytest.fixture
@@ -45,10 +45,6 @@ def patched(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         given["asked"]["ran"] = np.flatnonzero(ran).tolist()
         return given["due"]
 
-    def words(law: Any, now: str, any_newborn: Any, count: int) -> str:
-        given["asked"]["words"] = bool(any_newborn), count
-        return "words"
-
     def left(law: Any, world: Any, limits: str, live: Any) -> str:
         given["asked"]["live"] = np.flatnonzero(live).tolist()
         return "left"
@@ -56,7 +52,6 @@ def patched(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     monkeypatch.setattr(calls, "running", lambda _, limits: given["live"])
     monkeypatch.setattr(events, "have_room", lambda *_: given["room"])
     monkeypatch.setattr(calls, "moment_due", due)
-    monkeypatch.setattr(calls, "birth_words", words)
     monkeypatch.setattr(calls, "ticks_left", left)
     return given
 
@@ -79,7 +74,7 @@ def world_with(alive: Any) -> Any:
 def test_a_run_goes_on_while_a_world_runs_and_the_lists_have_room(
     live: tuple, due: tuple, newborn: Any, room: bool, patched: dict[str, Any]
 ) -> None:
-    """One newborn is enough to draw random words. One world is enough to remember a moment."""
+    """One world is enough to remember a moment."""
     patched.update(live=worlds(*live), due=worlds(*due), room=room)
     alive = [0, 3, 4, 5]
     ran = worlds(0, 1)
@@ -91,10 +86,8 @@ def test_a_run_goes_on_while_a_world_runs_and_the_lists_have_room(
     assert np.flatnonzero(made.active).tolist() == active
     assert bool(made.go_on) == (len(live) > 0 and room)
     assert bool(made.remembered) == (len(due) > 0)
-    assert (made.words, made.due, made.ran is ran) == ("words", "left", True)
-    assert patched["asked"] == {
-        "ran": [0, 1], "words": (len(newborn) > 0, 5), "live": list(live)
-    }  # fmt: skip
+    assert (made.due, made.ran is ran) == ("left", True)
+    assert patched["asked"] == {"ran": [0, 1], "live": list(live)}
 
 
 def test_a_survey_has_no_deaths_and_no_births_and_no_world_that_ran(
@@ -102,7 +95,7 @@ def test_a_survey_has_no_deaths_and_no_births_and_no_world_that_ran(
 ) -> None:
     made = steps().survey({}, world_with(cells(0, 5)), "events", "limits")
     assert not np.concatenate([made.died, made.newborn, made.ran]).any()
-    assert patched["asked"] == {"ran": [], "words": (False, 5), "live": [0, 2]}
+    assert patched["asked"] == {"ran": [], "live": [0, 2]}
 
 
 def test_an_organism_has_died_if_its_cell_is_empty_or_has_a_newborn(
@@ -145,5 +138,5 @@ def test_organisms_remember_their_senses_in_the_worlds_that_ran(
     law, bulk, held, senses, ran = given
     monkeypatch.setattr(calls, "remember", lambda *asked: asked)
     monkeypatch.setattr(Bulk, "of", lambda world: world)
-    made = _Steps(law, form, 5).remember(bulk, held, senses, ran)
+    made = _Steps(law, form).remember(bulk, held, senses, ran)
     assert made == ("law", "held with bulk", "senses", "ran")

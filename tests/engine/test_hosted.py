@@ -12,7 +12,7 @@ from primordia.engine.hosted import HostedChunks
 from primordia.engine.state import State, named_leaves
 from primordia.errors import InputError, Trouble
 from primordia.habitats.contract import Ability
-from primordia.law.genesis import body_words
+from primordia.law.genesis import birth_words, body_words
 from primordia.law.world import World
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import Wide, wide
@@ -54,7 +54,9 @@ class Notebook:
 
 def chunks(habitat: Notebook) -> Any:
     made: Any = object.__new__(HostedChunks)
-    made._habitat = habitat
+    made._habitat, calls = habitat, SimpleNamespace(hold=lambda world: world)
+    made._calls = calls
+    calls.words = lambda genome, world: birth_words(made._law, world, WORDS)
     made._law = SimpleNamespace(
         worlds=2,
         islands=Islands(("",), (0, CELLS)),

@@ -23,7 +23,7 @@ def decided(due: int, **changes: Any) -> Decision:
     """Return a decision after a tick in which nothing happened; cell 3 rests, and cell 0 is empty."""
     quiet: dict[str, Any] = {
         "alive": mask(1, 2, 3), "active": mask(1, 2), "died": mask(), "newborn": mask(),
-        "words": np.arange(8).reshape(4, 2), "ran": np.ones(1, bool), "remembered": np.bool_(False),
+        "ran": np.ones(1, bool), "remembered": np.bool_(False),
         "go_on": np.bool_(True), "due": np.int32(due),
     }  # fmt: skip
     return Decision(**{**quiet, **changes})
@@ -55,6 +55,9 @@ class Scripted:
             "next",
             np.full_like(senses, 90) if most else senses,
         )
+
+    def words(self, genome: Any, held: Any) -> np.ndarray:
+        return np.arange(8).reshape(4, 2)
 
     def settle(self, bulk: Any, events: Any, held: Any, unsettled: Any, limits: Any) -> tuple:
         self.log.append(("settle", int(unsettled.ticks)))

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from primordia.law.genesis import birth_words, body_words
+from primordia.law.world import World
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import to_host, wide
 from tests.law.turning import drawn
@@ -41,21 +42,21 @@ def test_worlds_begin_at_their_tick_and_wait_until_the_next_multiples(
     assert len(organisms.alive) == 8
 
 
-def test_bodies_get_the_words_of_their_world_tick_and_cell() -> None:
+def test_bodies_get_the_words_of_their_world_tick_of_birth_and_cell() -> None:
     """The high words of all draws are first, then the low words. The last low word is left out if odd."""
     law, words = law_of(MEADOW, cells=3, seeds=2), 3
-    world = begun(law, np.array([8, 2**63], np.uint64), tick=9)
-    birth = jax.jit(partial(birth_words, law, words=words))
-    found = np.asarray(birth(world, np.True_))
+    organisms, worlds = begun(law, np.array([8, 2**63], np.uint64), tick=70)
+    born = [9, 2**40, 11, 12, 9, 9]
+    world = World(organisms._replace(born=wide(born)), worlds)
+    found = np.asarray(jax.jit(partial(birth_words, law, words=words))(world))
     assert found.shape == (6, words)
     assert found.dtype == np.uint32
     draws = -(-words // 2)
     for cell in range(6):
         seed = (8, 2**63)[cell // 3]
-        pairs = [drawn(seed, Purpose.BODY, 9, cell % 3, draw) for draw in range(draws)]
+        pairs = [drawn(seed, Purpose.BODY, born[cell], cell % 3, draw) for draw in range(draws)]
         flat = [int(pair.hi) for pair in pairs] + [int(pair.lo) for pair in pairs]
         assert found[cell].tolist() == flat[:words]
-    assert not np.asarray(birth(world, np.False_)).any()
-    key = stream(wide([8, 2**63]), Purpose.BODY, wide([9, 9]))
+    key = stream(wide([8, 2**63]), Purpose.BODY, wide([11, 12]))
     some = jax.jit(body_words, static_argnums=2)(key, np.array([2, 0]), words)
     np.testing.assert_array_equal(some, found[[2, 3]])

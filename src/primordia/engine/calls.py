@@ -33,8 +33,6 @@ class Decision(NamedTuple):
     """bool (C,): cells whose organism died in the tick"""
     newborn: Array
     """bool (C,): cells whose organism was born in the tick, and needs a body"""
-    words: Array
-    """uint32 (C, words): random words of the bodies of the newborn"""
     ran: Array
     """bool (W,): worlds that ran in the tick"""
     remembered: Array
@@ -50,13 +48,14 @@ class Calls:
 
     def __init__(self, law: Law, form: Form, words: int) -> None:
         """Compile for worlds of a packed form, and for bodies made from `words` random words."""
-        steps = _Steps(law, form, words)
+        steps = _Steps(law, form)
         self.hold, self.release = shared(Form.hold, form), shared(Form.release, form)
         self.think = shared(_Steps.think, steps)
         self.live = shared(_Steps.live, steps)
         self.survey = shared(_Steps.survey, steps)
         self.settle = shared(_Steps.settle, steps, donate=(0, 1))
         self.remember = shared(_Steps.remember, steps, donate=(0,))
+        self.words = shared(_Steps.words, steps, words)
 
 
 class Unsettled(NamedTuple):
@@ -74,7 +73,6 @@ class Unsettled(NamedTuple):
 class _Steps:
     law: Law
     form: Form
-    words: int
 
     def think(self, genome: Genome, held: Held, senses: Array) -> Thought:
         """Think for the first tick after a settled tick."""
@@ -124,6 +122,10 @@ class _Steps:
         """Store each organism's senses and memory of a settled tick, once the newborn have senses."""
         return Bulk.of(remember(self.law, self.form.release(held, bulk), senses, ran))
 
+    def words(self, count: int, genome: Genome, held: Held) -> Array:
+        """Return `count` words of each organism's body at birth, uint32 (C, count)."""
+        return birth_words(self.law, self.form.release(held, Bulk(genome, None)), count)
+
     def _decide(
         self,
         world: World,
@@ -141,7 +143,6 @@ class _Steps:
             active=alive & law.per_cell(live_worlds),
             died=died,
             newborn=newborn,
-            words=birth_words(law, world, newborn.any(), self.words),
             ran=ran,
             remembered=moment_due(law, world.worlds, ran).any(),
             go_on=live_worlds.any() & room,

@@ -10,7 +10,7 @@ import numpy as np
 from jax import Array
 
 from primordia.brains.contract import Genome
-from primordia.engine.calls import Calls, Decision, Unsettled
+from primordia.engine.calls import Calls, Unsettled
 from primordia.engine.held import NO_BULK, Bulk, Form, Held
 from primordia.engine.messages import Messages
 from primordia.engine.state import Limits, State, filled, named_leaves
@@ -18,12 +18,11 @@ from primordia.engine.tallies import Tallies
 from primordia.errors import InputError, Trouble
 from primordia.habitats.contract import Ability, HostHabitat
 from primordia.law import events as log
-from primordia.law.genesis import begin, words_of
+from primordia.law.genesis import begin
 from primordia.law.law import Law
 from primordia.law.life import Thought
 from primordia.law.tick import no_fates
 from primordia.law.world import World
-from primordia.random.keys import Purpose, stream
 
 
 class HostedChunks:
@@ -71,7 +70,8 @@ class HostedChunks:
             self._tallies.note_deaths(np.asarray(decision.died))
             self._messages.note_deaths(np.asarray(decision.died))
             if np.asarray(decision.newborn).any():
-                senses = self._embody(senses, decision)
+                words = self._calls.words(bulk.genome, held)
+                senses = self._born(senses, np.flatnonzero(decision.newborn), words)
                 thought = self._calls.think(bulk.genome, held, senses)
             if np.asarray(decision.remembered):
                 bulk = self._calls.remember(bulk, held, senses, decision.ran)
@@ -115,9 +115,10 @@ class HostedChunks:
             )
         return Unsettled(now, fates, np.int32(passed)), thought, senses
 
-    def _embody(self, senses: np.ndarray, decision: Decision) -> np.ndarray:
-        newborn = np.flatnonzero(decision.newborn)
-        senses[newborn] = self._habitat.reset(newborn, np.asarray(decision.words)[newborn])
+    def _born(self, senses: np.ndarray, cells: np.ndarray, words: Array) -> np.ndarray:
+        """Give the organisms of some cells new bodies, made of their rows of `words`; return senses."""
+        if len(cells):
+            senses[cells] = self._habitat.reset(cells, np.asarray(words)[cells])
         return senses
 
     def save(self, state: State) -> dict[str, np.ndarray]:
@@ -153,11 +154,5 @@ class HostedChunks:
 
     def _reset_to_birth(self, world: World, senses: np.ndarray) -> np.ndarray:
         """Reset the bodies of the living to birth, for a habitat that cannot save them; return senses."""
-        alive, senses = np.flatnonzero(world.organisms.alive), senses.copy()
-        seed = world.worlds.seed.map(self._law.per_cell)
-        key = stream(seed, Purpose.BODY, world.organisms.born)
-        genome, cells = world.organisms.genome, self._law.cell_numbers
-        words = np.asarray(words_of(self._law, genome, key, cells, self._habitat.words))
-        if len(alive):
-            senses[alive] = self._habitat.reset(alive, words[alive])
-        return senses
+        words = self._calls.words(world.organisms.genome, self._calls.hold(world))
+        return self._born(senses.copy(), np.flatnonzero(world.organisms.alive), words)

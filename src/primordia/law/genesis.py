@@ -5,7 +5,7 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jax import Array, lax
+from jax import Array
 
 from primordia.brains.contract import Genome
 from primordia.brains.layout import BODY
@@ -70,16 +70,11 @@ def empty_worlds(law: Law, seed: Wide, library: Any = np) -> World:
     return World(organisms, worlds)
 
 
-def birth_words(law: Law, world: World, needed: Array, words: int) -> Array:
-    """Return the words of bodies born in this tick, or zeros if not `needed`; uint32 (C, words)."""
-    (organisms, worlds), cells = world, law.cell_numbers
-    key = stream(worlds.seed, Purpose.BODY, worlds.tick).map(law.per_cell)
-    return lax.cond(
-        needed,
-        lambda key: words_of(law, organisms.genome, key, cells, words),
-        lambda _: jnp.zeros((law.worlds * law.cells, words), jnp.uint32),
-        key,
-    )
+def birth_words(law: Law, world: World, words: int) -> Array:
+    """Return the words of each organism's body at its birth, uint32 (C, words); see `words_of`."""
+    seed = world.worlds.seed.map(law.per_cell)
+    key = stream(seed, Purpose.BODY, world.organisms.born)
+    return words_of(law, world.organisms.genome, key, law.cell_numbers, words)
 
 
 def words_of(law: Law, genome: Genome | None, key: Wide, cells: Array, words: int) -> Array:
