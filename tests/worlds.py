@@ -60,17 +60,6 @@ MILLS: dict[str, Any] = {
 """Two worlds in which organisms die in every way: hunger, broken wheels, accidents, neighbours. All
 kinds of seasons change their climate."""
 
-CLOCKWORK: dict[str, Any] = {
-    **MEADOW,
-    "brain": {"kind": "feed-forward", "hidden": 1},
-    "seeds": 2,
-    "replication": 0.0,
-    "genesis": "fill",
-    "metabolism": {"store": 30.5},
-    "sample_every": 10,
-}
-"""A task in which no random draw matters: all cells are filled, all starve in tick 31, and so on."""
-
 HERD: dict[str, Any] = {
     **MEADOW,
     "habitat": {"name": "tests.toys:Meadow", "lifespan": 90},
@@ -84,6 +73,15 @@ HERD: dict[str, Any] = {
     "sample_every": 10,
 }
 """Three small worlds with births, copies and deaths of several causes, for tests of what is recorded."""
+
+CLOCKWORK: dict[str, Any] = {
+    **HERD,
+    "replication": 0.0,
+    "hazard": 0.0,
+    "genesis": "fill",
+    "metabolism": {"store": 30.5},
+}
+"""The same worlds, but no random draw matters: all cells are filled, all starve in tick 31, and so on."""
 
 RING: dict[str, Any] = {
     **MEADOW,

@@ -2,6 +2,7 @@
 
 import csv
 import tomllib
+from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -17,12 +18,13 @@ from primordia.config import load
 from primordia.experiments.campaign import begin
 from primordia.experiments.file import read
 from primordia.experiments.job import live
+from primordia.habitats.gymnax import task as by_name
+from primordia.habitats.gymnax.check import Measured
+from primordia.habitats.gymnax.habitat import Gymnax
 from primordia.settings.tables import merged
 
 EXPERIMENTS = Path(__file__).parent.parent.parent / "experiments"
 FILES = sorted(EXPERIMENTS.glob("*/*.toml"))
-TRACED = {"acrobot", "poles"}
-"""Experiments whose settings are checked by compiled code of seconds; `make slow` reads them."""
 TRIALS = sorted(EXPERIMENTS.glob("*/founders/*.toml"))
 
 
@@ -44,18 +46,26 @@ def rows_of(file: Path) -> list[dict[str, str]]:
     return list(csv.DictReader(file.read_text().splitlines()))
 
 
-@pytest.fixture
-def _untraced(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Skip the check of a habitat's arrays, which takes most of the time: other tests play each task."""
-    monkeypatch.setattr(fitting, "check_arrays", lambda habitat: None)
+@pytest.fixture(scope="module")
+def _unplayed() -> Iterator[None]:
+    """Skip what compiles code, which takes most of the time: other tests play each task.
+
+    It is the check of a habitat's arrays, and the lives that measure an environment of gymnax.
+    """
+
+    def unmeasured(habitat: Gymnax) -> Measured:
+        return Measured(9.0, 1, np.zeros(len(habitat.senses.unbounded()), np.float32), [])
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(fitting, "check_arrays", lambda habitat: None)
+        patch.setattr(by_name, "measure", unmeasured)
+        by_name.task.cache_clear()
+        yield
+        by_name.task.cache_clear()
 
 
-@pytest.mark.usefixtures("_untraced")
-@pytest.mark.parametrize(
-    "file",
-    [pytest.param(file, marks=[pytest.mark.slow] * (file.stem in TRACED)) for file in FILES],
-    ids=lambda file: file.stem,
-)
+@pytest.mark.usefixtures("_unplayed")
+@pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
 def test_settings_of_every_arm_are_valid_and_limits_are_shared(file: Path) -> None:
     plan = read(file, Path("runs", file.stem))
     assert plan.question.endswith("?")
@@ -71,7 +81,7 @@ def test_settings_of_every_arm_are_valid_and_limits_are_shared(file: Path) -> No
     assert len({file.stem for file in FILES}) == len(FILES), "each has a folder of its name"
 
 
-@pytest.mark.usefixtures("_untraced")
+@pytest.mark.usefixtures("_unplayed")
 @pytest.mark.parametrize("file", TRIALS, ids=lambda file: file.stem)
 def test_settings_of_trials_are_valid(file: Path) -> None:
     values = tomllib.loads(file.read_text(encoding="utf-8"))

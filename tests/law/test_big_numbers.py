@@ -35,19 +35,19 @@ def test_samples_are_at_the_same_multiples(start: tuple[int, int]) -> None:
     """Samples are at every tenth tick since 0, wherever a world started, with ages counted from birth."""
     tick, births = start
     metrics = clockwork(start).table("metrics")
-    for world in range(2):
+    for world in range(3):
         in_world = metrics["world"] == world
         at = [t for t in range(tick + 1, tick + 201) if t % 10 == 0]
         assert metrics["tick"][in_world].tolist() == at
         lived = np.array([t - tick for t in at])
-        born = [births + 16 * (1 + t // 31) for t in lived.tolist()]
+        born = [births + 24 * (1 + t // 31) for t in lived.tolist()]
         assert metrics["births"][in_world].tolist() == born
         for name, values in {
-            "population": 16,
+            "population": 24,
             "oldest_age": lived % 31,
             "mean_age": lived % 31,
             "mean_energy": 30.5 - lived % 31,
-            "organism_ticks": 16 * lived,
-            "deaths_starved": lived // 31 * 16,
+            "organism_ticks": 24 * lived,
+            "deaths_starved": lived // 31 * 24,
         }.items():
             np.testing.assert_array_equal(metrics[name][in_world], values, name)

@@ -12,15 +12,15 @@ from tests.worlds import CLOCKWORK, HERD, RING, Lived, config, law_of
 
 
 def test_without_food_an_organism_lives_as_long_as_its_store_lasts() -> None:
-    """The first organisms have 100 units; organisms born after tick 50 have half a unit more."""
-    lived = Lived(config(CLOCKWORK, metabolism={"store": 100.0}), 50)
-    lived.change({"metabolism.store": 100.5})
-    lived.advance_to(250)
+    """The first organisms have 60 units; organisms born after tick 50 have half a unit more."""
+    lived = Lived(config(CLOCKWORK, metabolism={"store": 60.0}), 50)
+    lived.change({"metabolism.store": 60.5})
+    lived.advance_to(150)
     deaths = lived.table("deaths")
-    assert deaths["tick"].tolist() == [100] * 32 + [201] * 32
-    assert deaths["cause"].tolist() == ["starved"] * 64
-    assert deaths["energy"].tolist() == [0.0] * 32 + [-0.5] * 32
-    assert lived.table("births")["tick"].tolist() == np.repeat([0, 100, 201], 32).tolist()
+    assert deaths["tick"].tolist() == [60] * 72 + [121] * 72
+    assert deaths["cause"].tolist() == ["starved"] * 144
+    assert deaths["energy"].tolist() == [0.0] * 72 + [-0.5] * 72
+    assert lived.table("births")["tick"].tolist() == np.repeat([0, 60, 121], 72).tolist()
 
 
 def grown() -> Lived:
@@ -97,15 +97,15 @@ def test_births_and_deaths_are_as_frequent_as_their_chances() -> None:
 def test_genesis_can_fill_every_cell() -> None:
     run = Lived(config(CLOCKWORK), 100)
     births = run.table("births")
-    for world in range(2):
+    for world in range(3):
         history = History(run, world)
         assert history.extinctions == [31, 62, 93]
         in_world = births["world"] == world
-        assert births["tick"][in_world].tolist() == np.repeat([0, 31, 62, 93], 16).tolist()
-        assert births["cell"][in_world].tolist() == [*range(16)] * 4
-        assert births["id"][in_world].tolist() == [*range(64)]
+        assert births["tick"][in_world].tolist() == np.repeat([0, 31, 62, 93], 24).tolist()
+        assert births["cell"][in_world].tolist() == [*range(24)] * 4
+        assert births["id"][in_world].tolist() == [*range(96)]
         assert {(life.cause, life.age) for life in history.dead} == {("starved", 31)}
-    assert len(np.unique(run.genomes(), axis=0)) == 32
+    assert len(np.unique(run.genomes(), axis=0)) == 72
 
 
 @pytest.mark.parametrize(
