@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
-from tests.worlds import MILL
+from tests.worlds import MILLS
 
-SETTINGS: dict[str, Any] = {**MILL, "brain": {"hidden": 4}, "seeds": 2, "stop": {"ticks": 60}}
+SETTINGS: dict[str, Any] = {**MILLS, "stop": {"ticks": 60}}
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -5,11 +5,10 @@ from typing import Any
 
 import tomli_w
 
-from tests.worlds import HERD, MEADOW, MILL
+from tests.worlds import HERD, MEADOW, MILLS
 
-MILLS: dict[str, Any] = {
-    **MILL,
-    "brain": {"hidden": 4},
+THREE: dict[str, Any] = {
+    **MILLS,
     "replication": 0.2,
     "hazard": 0.01,
     "seed": 3,
@@ -22,7 +21,7 @@ ARMS = [{"name": "mild"}, {"name": "harsh", "hazard": 0.05}]
 
 def write(folder: Path, name: str = "mills", **changes: Any) -> Path:
     """Write an experiment's file, and its task beside it -> the path of the file."""
-    return written(folder, name, MILLS, {*MILL} - {"hazard"}, {"jobs": {"worlds": 2}, **changes})
+    return written(folder, name, THREE, {*MILLS} - {"hazard"}, {"jobs": {"worlds": 2}, **changes})
 
 
 def herds(folder: Path, **changes: Any) -> Path:

@@ -18,9 +18,9 @@ from primordia.runs import loop, recorder
 from primordia.runs.archive import Archive
 from tests.commands import here
 from tests.trouble import flip
-from tests.worlds import MILL, config
+from tests.worlds import MILLS, config
 
-SETTINGS = {**MILL, "brain": {"hidden": 4}, "seeds": 2, "seed": 3, "stop": {"ticks": 400}}
+SETTINGS = {**MILLS, "seed": 3, "stop": {"ticks": 400}}
 
 
 @pytest.fixture(scope="module")
@@ -106,7 +106,7 @@ def test_an_opened_run_does_not_see_it_grow(tmp_path: Path) -> None:
 def test_some_columns_are_read_from_closed_and_open_segments(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(recorder, "SEGMENT_ROWS", 9)
+    monkeypatch.setattr(recorder, "SEGMENT_ROWS", 11)
     monkeypatch.setattr(recorder.Recorder, "finish", lambda _: None)
     loop.start(config(SETTINGS), tmp_path / "run")
     run = Archive(tmp_path / "run")

@@ -18,9 +18,9 @@ from primordia.runs import loop
 from primordia.runs.opening import opened, split_name
 from primordia.runs.schema import TABLES
 from tests.commands import complains, here
-from tests.worlds import MILL, config
+from tests.worlds import MILLS, config
 
-SETTINGS: dict[str, Any] = {**MILL, "brain": {"hidden": 4}, "seed": 3, "stop": {"ticks": 400}}
+SETTINGS: dict[str, Any] = {**MILLS, "seeds": 1, "seed": 3, "stop": {"ticks": 400}}
 JOBS = {"b": 0, "a": 1}
 """Names of runs, with their worlds; by name they are in another order."""
 

@@ -13,7 +13,7 @@ from primordia import device
 from primordia.errors import InputError
 from primordia.runs import loop
 from tests.commands import complains, here
-from tests.worlds import MILL, config
+from tests.worlds import MILLS, config
 
 CARD = "NVIDIA H100 80GB HBM3"
 
@@ -22,7 +22,7 @@ CARD = "NVIDIA H100 80GB HBM3"
 def elsewhere(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run that says that it was made on a device which is not here."""
     run = tmp_path_factory.mktemp("device") / "run"
-    loop.start(config(MILL, brain={"hidden": 4}, seeds=2, stop={"ticks": 60}), run)
+    loop.start(config(MILLS, stop={"ticks": 60}), run)
     versions = json.loads((run / "versions.json").read_text())
     (run / "versions.json").write_text(json.dumps({**versions, "device": CARD}))
     return run

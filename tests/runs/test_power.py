@@ -19,10 +19,10 @@ from primordia.runs import bundle, checkpoint, directory, loop, recorder
 from primordia.runs.archive import Archive
 from primordia.runs.arrays import world_ticks
 from tests.disk import Disk, Instant
-from tests.worlds import MILL, config
+from tests.worlds import MILLS, config
 
 HALF, TICKS = 150, 300
-SETTINGS: dict[str, Any] = {**MILL, "brain": {"hidden": 4}, "seeds": 2, "stop": {"ticks": HALF}}
+SETTINGS: dict[str, Any] = {**MILLS, "stop": {"ticks": HALF}}
 
 
 @dataclass

@@ -3,7 +3,6 @@
 import signal
 from contextlib import nullcontext
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -18,9 +17,8 @@ from primordia.runs import loop, recorder
 from primordia.runs.archive import Archive
 from primordia.runs.digest import row_hashes
 from primordia.runs.schema import TABLES
-from tests.worlds import MILL, Lived, config
+from tests.worlds import MILLS, Lived, config
 
-WHAT: dict[str, Any] = {**MILL, "brain": {"hidden": 4}, "seeds": 2, "hazard": 0.02}
 TICKS = 900
 WORDS = st.integers(0, 2**32 - 1)
 
@@ -28,7 +26,7 @@ WORDS = st.integers(0, 2**32 - 1)
 @pytest.fixture(scope="module")
 def lived() -> Lived:
     """Live the same worlds in memory, with the events as the law gave them."""
-    return Lived(config(WHAT), TICKS)
+    return Lived(config(MILLS), TICKS)
 
 
 def recorded(run: Path, interrupted_after: int = TICKS) -> primordia.Run:
@@ -40,7 +38,7 @@ def recorded(run: Path, interrupted_after: int = TICKS) -> primordia.Run:
             signal.raise_signal(signal.SIGINT)
 
     with pytest.raises(KeyboardInterrupt) if interrupted_after < TICKS else nullcontext():
-        loop.start(config(WHAT, stop={"ticks": TICKS}), run, listen=press)
+        loop.start(config(MILLS, stop={"ticks": TICKS}), run, listen=press)
     return primordia.Run(run)
 
 
@@ -115,7 +113,7 @@ def test_files_are_plain_parquet(lived: Lived, tmp_path: Path) -> None:
         assert run.table(name).schema.equals(schema)
     births, deaths = (pq.read_table(run.path / name)["cause"] for name in ("births", "deaths"))
     assert {*births.to_pylist()} == {"founder", "copy", "mutant"}
-    assert {*deaths.to_pylist()} <= {"fatal", "starved", "hazard"}
+    assert {*deaths.to_pylist()} <= {"fatal", "starved", "hazard", "replaced"}
 
 
 @given(st.integers(0, 5), st.integers(0, 2), WORDS, st.integers(1, 2**32 - 1))

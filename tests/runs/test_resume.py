@@ -13,7 +13,7 @@ from primordia.runs import checkpoint, directory, loop
 from primordia.runs.archive import Archive
 from primordia.runs.arrays import world_ticks
 from tests.commands import begin, complains, here
-from tests.worlds import MILL, config
+from tests.worlds import MILLS, config
 
 TICKS, FEW = 45_000, 3_000
 """Ticks of runs that are disturbed while they live, and of others."""
@@ -24,7 +24,7 @@ SLOWLY = ("--checkpoint-every", "0.05")
 def mill(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Write the file of a task: two worlds with seasons, a metabolism and a noisy motor."""
     file = tmp_path_factory.mktemp("task") / "mill.toml"
-    file.write_text(config(MILL, brain={"hidden": 4}, seeds=2).to_toml())
+    file.write_text(config(MILLS).to_toml())
     return file
 
 
@@ -115,7 +115,7 @@ def test_a_script_begins_a_run_or_goes_on_with_it(mill: Path, tmp_path: Path) ->
         assert done.returncode == 0, done.stderr
         assert primordia.load(out).info()["worlds"][1]["ticks"] == 200
     assert here("resume", out).returncode == 0
-    complains(here(*words, "--cells", 5, "--resume"), 2, "cells is 24 there, and 5 here")
+    complains(here(*words, "--cells", 9, "--resume"), 2, "cells is 16 there, and 9 here")
     complains(here(*words), 2, "exists already")
 
 

@@ -17,13 +17,11 @@ from primordia.runs.archive import Archive
 from primordia.runs.digest import digests
 from primordia.runs.verify import verify
 from tests.trouble import flip, newest, reseal
-from tests.worlds import MILL, Lived, config
+from tests.worlds import MILLS, Lived, config
 
 TICKS = 120
 SETTINGS: dict[str, Any] = {
-    **MILL,
-    "brain": {"hidden": 4},
-    "seeds": 2,
+    **MILLS,
     "seed": 3,
     "stop": {"ticks": TICKS},
 }
