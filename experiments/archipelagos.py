@@ -42,10 +42,11 @@ OF_WORLDS = (
 def report(file: Path) -> None:
     """Measure all arms of an experiment, and write both tables."""
     kept: dict[Path, list[_World]] = {}
+    best: dict[tuple[int, int], np.ndarray] = {}
 
     def worlds(run: Records) -> list["_World"]:
         if run.path not in kept:
-            kept[run.path] = [_World(run, world) for world in range(run.config.seeds)]
+            kept[run.path] = [_World(run, world, best) for world in range(run.config.seeds)]
         return kept[run.path]
 
     measure(
@@ -57,7 +58,8 @@ def report(file: Path) -> None:
 class _World:
     """The late-born natives and the founders of a world, on every island."""
 
-    def __init__(self, run: Records, world: int) -> None:
+    def __init__(self, run: Records, world: int, best: dict[tuple[int, int], np.ndarray]) -> None:
+        """`best`: by seed and number of founders, since worlds of one seed have the same founders."""
         self._run, self._world, islands = run, world, run.config.islands
         lives = run.lives
         late = np.flatnonzero(lives.late(LATE) & (lives.world == world))
@@ -66,8 +68,10 @@ class _World:
         self.home = islands.of_cells(lives.cell[rows])
         numbers = [(int(number), world) for number in lives.id[rows]]
         self.lived = everywhere(run, players_of(run, numbers), world, GAMES, TICKS)
-        founders = founders_of(run, np.array([world]), np.array([len(rows)]))[2]
-        self.best = self._in_fresh_games(founders)
+        if (self.seed, len(rows)) not in best:
+            founders = founders_of(run, np.array([world]), np.array([len(rows)]))[2]
+            best[self.seed, len(rows)] = self._in_fresh_games(founders)
+        self.best = best[self.seed, len(rows)]
         self.mastered = self.lived > self.best
 
     def _in_fresh_games(self, founders: Players) -> np.ndarray:

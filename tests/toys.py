@@ -135,7 +135,11 @@ class Mirror(OnHost):
 class Clocked(Mirror):
     """A habitat that tallies the ticks lived, up and down; its senses of unstepped bodies are 9."""
 
-    tallies = "ticks", "ticks_down"
+    counted: tuple[str, ...] = "ticks", "ticks_down"
+
+    def __init__(self, inner: str = "cartpole", **options: Any) -> None:
+        super().__init__(inner, **options)
+        self.tallies = self.counted
 
     def open(self, cells: int, watched: bool = False) -> None:
         super().open(cells)

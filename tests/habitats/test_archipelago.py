@@ -124,7 +124,7 @@ def test_bodies_on_islands_on_the_host_are_those_in_jax() -> None:
 
 def test_counts_of_islands_have_columns_of_their_own() -> None:
     class Twice(Clocked):
-        tallies = "ticks_down", "rounds"
+        counted = "ticks_down", "rounds"
 
     host: Any = archipelago([Clocked("meadow"), Twice("meadow")], SHORE)
     assert host.tallies == ("ticks", "ticks_down", "rounds")

@@ -1,14 +1,14 @@
 """The check of environments in JAX: faults that are found, and measured lifespans."""
 
 from types import SimpleNamespace
-from typing import Any, cast
+from typing import Any
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from primordia.habitats.contract import Continuous, Discrete
+from primordia.habitats.contract import Discrete
 from primordia.habitats.gymnax import check
 from primordia.habitats.gymnax.check import Measured, measure
 from primordia.habitats.gymnax.habitat import Gymnax
@@ -34,16 +34,6 @@ def test_lives_are_measured(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(jax, "clear_caches", lambda: None)
     found = measure(Gymnax(env="tests.walks:Choice"))
     assert (found.lifespan, found.ended, found.faults) == (9.0, 32, [])
-
-
-def test_actions_of_random_lives_are_of_their_kind_and_use_all_its_values() -> None:
-    chosen = check._actions(cast(Any, SimpleNamespace(action=Discrete(3))))
-    assert (chosen.shape, chosen.dtype) == ((check.TICKS, check.BODIES), np.int32)
-    shares = np.bincount(chosen.ravel()) / chosen.size
-    np.testing.assert_allclose(shares, [1 / 3] * 3, atol=0.02)
-    moved = check._actions(cast(Any, SimpleNamespace(action=Continuous(2))))
-    assert (moved.shape, moved.dtype) == ((check.TICKS, check.BODIES, 2), np.float32)
-    np.testing.assert_allclose([moved.mean(), moved.std()], [0, 1], atol=0.02)
 
 
 class Walked:

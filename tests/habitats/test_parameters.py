@@ -313,7 +313,7 @@ def test_habitats_say_whether_they_can_scale() -> None:
 @pytest.mark.parametrize(
     ("settings", "says"),
     [
-        ({"of": "gravty"}, "there is no parameter 'gravty'; did you mean 'gravity'?; known: gravity,"),
+        ({"of": "gravty"}, "no physical parameter 'gravty'; did you mean 'gravity'?; known: gravity,"),
         ({"range": [2, 1]}, "habitat.change.0: range: the least factor is above the largest"),
         ({"range": [0, 1]}, "range.0: input should be greater than 0, not 0"),
         ({"of": []}, "of: tuple should have at least 1 item"),
@@ -327,5 +327,5 @@ def test_a_wrong_parameter_is_named(settings: dict[str, Any], says: str) -> None
 
 
 def test_a_habitat_without_parameters_refuses() -> None:
-    with pytest.raises(InputError, match=r"change\.0: this habitat has no physical parameters"):
+    with pytest.raises(InputError, match=r"change\.0: of: .* 'gravity'; this habitat has none"):
         load("CartPole-survival", {"habitat": {"name": "tests.toys:Mill", "change": [GRAVITY]}})

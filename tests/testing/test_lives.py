@@ -7,9 +7,10 @@ import pytest
 from PIL import Image
 
 from primordia.habitats import Compound, Continuous, Discrete, HostHabitat, Outcome
+from primordia.habitats.bodies import random_actions
 from primordia.random.trials import words
 from primordia.testing import ContractError
-from primordia.testing.lives import HALF, TICKS, Lives, Past, actions
+from primordia.testing.lives import HALF, TICKS, Lives, Past
 from primordia.testing.report import ALL
 
 LATER, SOONER = 9, 4
@@ -68,7 +69,7 @@ class Noted(HostHabitat):
 
 
 WORD = words(0, ALL, 1)[:, 0]
-ACTION = actions(Discrete(5))
+ACTION = random_actions(Discrete(5), TICKS, ALL)
 DIES = WORD % 1024 % 2 == 0
 ENDS = np.where(DIES, np.where(WORD % 1024 % 4 == 0, SOONER, LATER), TICKS)
 """Ticks of each life."""
@@ -229,14 +230,16 @@ def test_the_first_life_that_differs_is_named_with_its_age() -> None:
 
 
 def test_actions_are_of_their_kind_and_use_all_its_values() -> None:
-    chosen = actions(Discrete(3))
+    chosen = random_actions(Discrete(3), TICKS, ALL)
     assert (chosen.shape, chosen.dtype) == ((TICKS, ALL), np.int32)
     assert set(chosen.flat) == {0, 1, 2}
-    moved = actions(Continuous(2))
+    moved = random_actions(Continuous(2), TICKS, ALL)
     assert (moved.shape, moved.dtype) == ((TICKS, ALL, 2), np.float32)
     assert abs(moved.mean()) < 0.2
     assert abs(moved.std() - 1) < 0.1
-    both = actions(Compound((Continuous(2), Discrete(4), Continuous(1), Discrete(2))))
+    both = random_actions(
+        Compound((Continuous(2), Discrete(4), Continuous(1), Discrete(2))), TICKS, ALL
+    )
     assert both.shape == (TICKS, ALL, 5)
     for column, values in ((2, {0.0, 1.0, 2.0, 3.0}), (4, {0.0, 1.0})):
         assert set(both[..., column].flat) == values

@@ -2,8 +2,9 @@
 
 Each tick has one compiled call, which judges this tick and then thinks for the next tick. A tick
 without events needs no other call. A tick with an event, or with a change that is due, is settled
-by a second call. A third call computes the first thought of the newborn. The changes of
-unsettled ticks are kept beside the state, so a chunk may end at any tick.
+by a second call. Two further calls draw the words of newborn bodies, and compute the first
+thought of the newborn. The changes of unsettled ticks are kept beside the state, so a chunk may
+end at any tick.
 """
 
 import numpy as np

@@ -15,12 +15,11 @@ from jax import Array
 from jax.tree_util import register_dataclass
 
 from primordia.errors import InputError
+from primordia.habitats.around import Composed
 from primordia.habitats.contract import (
     Ability,
-    Action,
     AnyHabitat,
     Bodies,
-    Habitat,
     HostHabitat,
     JaxHabitat,
     Outcome,
@@ -44,19 +43,10 @@ def _common(values: Iterable[Any]) -> Any:
     return different.pop() if len(different) == 1 else None
 
 
-class Archipelago(Habitat):
+class Archipelago(Composed):
     """What archipelagos in JAX and on the host have in common."""
 
     habitats: tuple[Any, ...]
-    senses_size: int
-    action: Action
-    words: int
-    versions: dict[str, str]
-    rate: float | None
-    episode: int | None
-    tallies: tuple[str, ...]
-    exact: bool
-    buttons: tuple[str, ...] | None
 
     def __init__(self, habitats: Sequence[AnyHabitat], islands: Islands) -> None:
         union = Union.of(habitats, islands.names)
@@ -70,16 +60,7 @@ class Archipelago(Habitat):
         self.exact = all(each.exact for each in habitats)
         self.versions = {k: v for each in habitats for k, v in each.versions.items()}
         self.tallies = union.tallies
-
-    @property
-    def _key(self) -> tuple:
-        return self.habitats, self.islands
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Archipelago) and self._key == other._key
-
-    def __hash__(self) -> int:
-        return hash(self._key)
+        self._key = (type(self), self.habitats, islands)
 
     def original(self) -> Any:
         """Return the islands as the standard benchmarks score them; None if one has no original."""

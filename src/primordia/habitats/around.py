@@ -13,14 +13,14 @@ def _passed_on(method: Method) -> Method:
     """Return a method that calls the inner habitat's method of the same name."""
 
     @wraps(method, updated=())  # without the mark of an abstract method
-    def call(self: "_Around", *given: Any, **named: Any) -> Any:
+    def call(self: "Around", *given: Any, **named: Any) -> Any:
         return getattr(self.inner, method.__name__)(*given, **named)
 
     return call  # type: ignore[return-value]
 
 
-class _Around(Habitat):
-    """The properties and pictures of the inner habitat. Equal ones share compiled code."""
+class Composed(Habitat):
+    """A habitat made of others: its properties are attributes. Equal ones share compiled code."""
 
     senses_size: int
     action: Action
@@ -31,6 +31,17 @@ class _Around(Habitat):
     tallies: tuple[str, ...]
     exact: bool
     buttons: tuple[str, ...] | None
+    _key: tuple
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Composed) and self._key == other._key
+
+    def __hash__(self) -> int:
+        return hash(self._key)
+
+
+class Around(Composed):
+    """The properties and pictures of the inner habitat."""
 
     def __init__(self, inner: AnyHabitat, *own: Any) -> None:
         """Wrap a habitat; `own` are all settings of the wrapper, which can be compared and hashed."""
@@ -45,12 +56,6 @@ class _Around(Habitat):
         """Return the names of the inner habitat's physical parameters."""
         return self.inner.parameters
 
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Around) and self._key == other._key
-
-    def __hash__(self) -> int:
-        return hash(self._key)
-
     lacks = _passed_on(Habitat.lacks)
     picture = _passed_on(Habitat.picture)
     picture_scaled = _passed_on(Habitat.picture_scaled)
@@ -61,7 +66,7 @@ class _Around(Habitat):
         return self.inner.original()
 
 
-class AroundJax(_Around, JaxHabitat):
+class AroundJax(Around, JaxHabitat):
     """A habitat in JAX around another."""
 
     inner: JaxHabitat
@@ -72,7 +77,7 @@ class AroundJax(_Around, JaxHabitat):
     step_scaled = _passed_on(JaxHabitat.step_scaled)
 
 
-class AroundHost(_Around, HostHabitat):
+class AroundHost(Around, HostHabitat):
     """A habitat on the host around another."""
 
     inner: HostHabitat
@@ -91,7 +96,7 @@ class AroundHost(_Around, HostHabitat):
 
 def inside(habitat: AnyHabitat, kind: type) -> Any:
     """Return the habitat itself, or the one inside it, that is of a kind; None if there is none."""
-    while isinstance(habitat, _Around):
+    while isinstance(habitat, Around):
         if isinstance(habitat, kind):
             return habitat
         habitat = habitat.inner
@@ -100,6 +105,6 @@ def inside(habitat: AnyHabitat, kind: type) -> Any:
 
 def innermost(habitat: AnyHabitat) -> AnyHabitat:
     """Return the habitat without all that is around it."""
-    while isinstance(habitat, _Around):
+    while isinstance(habitat, Around):
         habitat = habitat.inner
     return habitat

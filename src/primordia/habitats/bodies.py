@@ -1,4 +1,4 @@
-"""Bodies in JAX: inserted into cells, selected, and checked for finite coordinates."""
+"""Bodies in JAX: inserted into cells, selected, and checked for finite coordinates; trials of them."""
 
 from functools import partial
 
@@ -9,7 +9,8 @@ from jax import Array
 
 from primordia.compiled import shared
 from primordia.habitats.archipelago import ArchipelagoInJax, Parts, joined, split
-from primordia.habitats.contract import Bodies, JaxHabitat
+from primordia.habitats.contract import Action, Bodies, Continuous, Discrete, JaxHabitat
+from primordia.random import trials
 
 MADE = 32
 """Number of bodies that `fresh_bodies` makes. Each number would be compiled separately, which takes half
@@ -19,6 +20,21 @@ a minute for bodies of MJX."""
 def fresh_bodies(habitat: JaxHabitat, words: np.ndarray) -> Bodies:
     """Return fresh bodies from words uint32 (MADE, words), outside a world."""
     return shared(type(habitat).reset, habitat)(words)
+
+
+def random_actions(kind: Action, ticks: int, count: int) -> np.ndarray:
+    """Return actions of trials, the same in every call, for each tick and body: (ticks, count, ...)."""
+    if isinstance(kind, Discrete):
+        return (trials.words(1, ticks, count) % np.uint32(kind.size)).astype(np.int32)
+    if isinstance(kind, Continuous):
+        return trials.normal(1, ticks, count, kind.size)
+    drawn, at = trials.normal(1, ticks, count, kind.columns), 0
+    columns = trials.words(2, ticks, count, kind.columns)
+    for part in kind.parts:
+        if isinstance(part, Discrete):
+            drawn[..., at] = columns[..., at] % np.uint32(part.size)
+        at += 1 if isinstance(part, Discrete) else part.size
+    return drawn
 
 
 def placeholder_bodies(habitat: JaxHabitat, cells: int) -> Bodies:

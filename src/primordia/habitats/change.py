@@ -18,7 +18,6 @@ from primordia.random.keys import below, bits, chance
 from primordia.random.wide import Wide
 from primordia.settings.base import Settings
 from primordia.settings.fields import first_fault
-from primordia.settings.tables import did_you_mean
 
 
 def _listed(value: Any) -> Any:
@@ -195,19 +194,10 @@ class Parameter(Change):
     range: tuple[Factor, Factor] = Field(strict=False, description="least and largest factor")
 
     def check(self, habitat: AnyHabitat) -> None:
-        """Raise ValueError if the habitat does not offer these parameters."""
-        check_parameters(habitat)
-        if not habitat.parameters:
-            raise ValueError(
-                "this habitat has no physical parameters that can change; choose another kind of"
-                " change, such as invert-senses"
-            )
+        """Raise InputError if the habitat does not offer these parameters, and ValueError if the
+        least factor is above the largest."""
+        check_parameters(habitat, "of", self.of)
         _need_order(self.range)
-        for name in self.of:
-            if name not in habitat.parameters:
-                known = ", ".join(habitat.parameters)
-                near = did_you_mean(name, list(habitat.parameters))
-                raise ValueError(f"of: there is no parameter {name!r}{near}; known: {known}")
 
     def first(self, kind: Action, count: int) -> Array:
         """Return the factors at birth, float32 (N,)."""
@@ -285,6 +275,6 @@ def changes_of(tables: Any, habitat: AnyHabitat) -> tuple[Kind, ...]:
     for number, change in enumerate(changes):
         try:
             change.check(habitat)
-        except ValueError as error:
+        except (ValueError, InputError) as error:
             raise InputError(f"habitat.change.{number}: {error}") from None
     return changes

@@ -1,5 +1,6 @@
 """The checks of a habitat before a run: its properties, and in JAX its shapes and dtypes."""
 
+from collections.abc import Iterable
 from typing import Any
 
 import jax
@@ -16,6 +17,7 @@ from primordia.habitats.contract import (
     JaxHabitat,
     Outcome,
 )
+from primordia.settings.tables import did_you_mean
 from primordia.settings.tracing import COUNT, Tracing
 
 LARGEST = 2**20
@@ -74,11 +76,17 @@ def _check_options(tracing: Tracing, habitat: AnyHabitat) -> None:
     )
 
 
-def check_parameters(habitat: AnyHabitat) -> None:
-    """Check the physical parameters that a habitat offers for changes within a life.
+def check_parameters(habitat: AnyHabitat, where: str = "", names: Iterable[str] = ()) -> None:
+    """Check the physical parameters that a habitat offers, and whether some of them are among these.
+
+    Args:
+        habitat: the habitat.
+        where: the setting that names parameters, for the message.
+        names: the parameters that it names.
 
     Raises:
-        InputError: they are not a tuple of names, or the habitat cannot scale them.
+        InputError: the habitat offers something else than names, cannot scale what it offers, or does
+            not offer one of `names`.
     """
     tracing, parameters = Tracing("habitat", habitat), habitat.parameters
     tracing.need(
@@ -90,6 +98,11 @@ def check_parameters(habitat: AnyHabitat) -> None:
         not parameters or habitat.can(Ability.SCALE),
         f"has parameters that may change, so it must define {needed}()",
     )
+    for name in names:
+        if name not in parameters:
+            near = did_you_mean(name, [*parameters])
+            has = f"known: {', '.join(parameters)}" if parameters else "this habitat has none"
+            raise InputError(f"{where}: there is no physical parameter {name!r}{near}; {has}")
 
 
 def _is_action(action: object) -> bool:

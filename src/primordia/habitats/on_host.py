@@ -1,13 +1,12 @@
 """A JAX habitat stepped on the host, for organisms that play games rather than live in a world."""
 
-from typing import TYPE_CHECKING
-
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
 from primordia.compiled import shared
+from primordia.habitats.around import Around
 from primordia.habitats.bodies import (
     insert_bodies,
     not_finite,
@@ -16,31 +15,24 @@ from primordia.habitats.bodies import (
 )
 from primordia.habitats.contract import (
     Ability,
-    Action,
     Bodies,
     HostHabitat,
     JaxHabitat,
     Outcome,
 )
 
-if TYPE_CHECKING:
-    from PIL.Image import Image
 
-
-class OnHost(HostHabitat):
+class OnHost(Around, HostHabitat):
     """A JAX habitat with the interface of habitats on the host; lives are the same, bit for bit."""
 
-    senses_size: int
-    action: Action
-    words: int
-    rate: float | None
-    versions: dict[str, str]
-
     def __init__(self, inner: JaxHabitat) -> None:
-        self.inner = inner
-        self.senses_size, self.action, self.words = inner.senses_size, inner.action, inner.words
-        self.rate, self.versions = inner.rate, inner.versions
+        super().__init__(inner)
         self._embody, self._step = shared(_embody, inner), shared(_step, inner)
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """Return no names: only the JAX habitat takes factors."""
+        return ()
 
     def open(self, cells: int, watched: bool = False) -> None:
         """Allocate the bodies."""
@@ -78,15 +70,8 @@ class OnHost(HostHabitat):
     def lacks(self, ability: Ability) -> list[str]:
         """Return the methods that the habitat lacks for an ability. Pictures are drawn by the JAX
         habitat."""
-        return self.inner.lacks(ability) if ability is Ability.PICTURE else super().lacks(ability)
-
-    def picture(self, body: Bodies, action: np.ndarray) -> "Image":
-        """Return the JAX habitat's picture."""
-        return self.inner.picture(body, action)
-
-    def caption(self, body: Bodies, action: np.ndarray) -> str:
-        """Return the JAX habitat's caption."""
-        return self.inner.caption(body, action)
+        own = ability is not Ability.PICTURE
+        return HostHabitat.lacks(self, ability) if own else self.inner.lacks(ability)
 
 
 def _embody(

@@ -11,7 +11,6 @@ from primordia.errors import InputError
 from primordia.habitats.around import AroundHost, AroundJax
 from primordia.habitats.checks import check_parameters
 from primordia.habitats.contract import AnyHabitat, Bodies, JaxHabitat, Outcome
-from primordia.settings.tables import did_you_mean
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -74,23 +73,17 @@ def scaled(habitat: AnyHabitat, factors: Any) -> AnyHabitat:
     Raises:
         InputError: the habitat has no such parameter, or a factor is wrong.
     """
-    check_parameters(habitat)
-    known = habitat.parameters
     if not isinstance(factors, Mapping):
         raise InputError("habitat.factors: write a table, such as factors = {gravity = 2.0}")
+    check_parameters(habitat, "habitat.factors", factors)
     for name, factor in factors.items():
-        if name not in known:
-            has = f"known: {', '.join(known)}" if known else "this habitat has no parameters"
-            raise InputError(
-                f"habitat.factors: there is no parameter {name!r}{did_you_mean(name, [*known])}; {has}"
-            )
         if isinstance(factor, bool) or not isinstance(factor, int | float):
             raise InputError(f"habitat.factors.{name}: {factor!r} is not a number")
         if not 0 < factor <= LARGEST:
             raise InputError(
                 f"habitat.factors.{name}: {factor:g} is not above 0 and at most {LARGEST:g}"
             )
-    values = tuple(float(factors.get(name, 1.0)) for name in known)
+    values = tuple(float(factors.get(name, 1.0)) for name in habitat.parameters)
     if isinstance(habitat, JaxHabitat):
         return ScaledInJax(habitat, values)
     return ScaledOnHost(habitat, values)

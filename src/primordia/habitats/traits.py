@@ -26,7 +26,6 @@ from primordia.habitats.checks import check_parameters
 from primordia.habitats.contract import AnyHabitat, Bodies, JaxHabitat, Outcome
 from primordia.settings.base import Settings
 from primordia.settings.fields import first_fault
-from primordia.settings.tables import did_you_mean
 
 if TYPE_CHECKING:
     from PIL.Image import Image
@@ -94,16 +93,8 @@ class Traits:
 
     def check(self, habitat: AnyHabitat) -> None:
         """Raise InputError if the habitat does not offer a parameter that a trait multiplies."""
-        check_parameters(habitat)
-        known = habitat.parameters
         for name in self.names:
-            for own in self.parameters(name):
-                if own not in known:
-                    near = did_you_mean(own, [*known])
-                    has = f"known: {', '.join(known)}" if known else "this habitat has none"
-                    raise InputError(
-                        f"habitat.traits.{name}: there is no physical parameter {own!r}{near}; {has}"
-                    )
+            check_parameters(habitat, f"habitat.traits.{name}", self.parameters(name))
 
     def factors(self, genes: Any) -> Any:
         """Return the factors of N bodies, float32 (N, T), from their genes, float32 (N, T).

@@ -74,7 +74,7 @@ class Workers(Pool):
         for first, worker in enumerate(self._workers):
             _send(worker, json.dumps({**setup, "first": first}).encode() + b"\n")
         for first, worker in enumerate(self._workers):
-            _await_ready(worker, len(range(first, cells, self._count)))
+            _receive(worker, len(range(first, cells, self._count)) * len(READY))
 
     def begin(self, todo: np.ndarray) -> None:
         """Let all workers step the cells of `todo`, bool (N,), by one tick."""
@@ -87,13 +87,14 @@ class Workers(Pool):
         Raises:
             Trouble: a worker died, or does not answer.
         """
-        self._await_all()
+        for worker in self._workers:
+            _receive(worker, len(READY))
 
     def reset(self, todo: np.ndarray) -> None:
         """Begin new lives in the cells of `todo`, bool (N,)."""
         self.arrays["todo"][:] = todo
         self._command(RESET)
-        self._await_all()
+        self.finish()
 
     def save(self) -> list[bytes]:
         """Return the state of each cell's simulator."""
@@ -103,7 +104,7 @@ class Workers(Pool):
             for cell in range(first, self._cells, self._count):
                 length = int.from_bytes(_receive(worker, 4), "little")
                 states[cell] = _receive(worker, length)
-        self._await_all()
+        self.finish()
         return states
 
     def load(self, states: list[bytes]) -> None:
@@ -113,7 +114,8 @@ class Workers(Pool):
             for cell in range(first, self._cells, self._count):
                 _send(worker, len(states[cell]).to_bytes(4, "little") + states[cell])
         for worker in self._workers:
-            _await_ready(worker, at_leisure=True)  # the workers may have to live whole lives again
+            # The workers may have to live whole lives again.
+            _receive(worker, len(READY), at_leisure=True)
 
     def close(self) -> None:
         """Stop the workers."""
@@ -122,11 +124,6 @@ class Workers(Pool):
     def _command(self, command: bytes) -> None:
         for worker in self._workers:
             _send(worker, command)
-
-    def _await_all(self) -> None:
-        """Wait until every worker has done its command."""
-        for worker in self._workers:
-            _await_ready(worker)
 
 
 def _spawn(memory: int) -> subprocess.Popen:
@@ -149,11 +146,6 @@ def _send(worker: subprocess.Popen, data: bytes) -> None:
             data = data[worker.stdin.write(data) :]
     except BrokenPipeError:
         raise _has_ended(worker) from None
-
-
-def _await_ready(worker: subprocess.Popen, times: int = 1, at_leisure: bool = False) -> None:
-    """Wait for `times` answers that a worker is ready; see `_receive`."""
-    _receive(worker, times * len(READY), at_leisure)
 
 
 def _receive(worker: subprocess.Popen, count: int, at_leisure: bool = False) -> bytes:

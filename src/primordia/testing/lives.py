@@ -9,18 +9,16 @@ import jax
 import numpy as np
 from PIL.Image import Image
 
+from primordia.habitats.bodies import random_actions
 from primordia.habitats.checks import check_outcome
 from primordia.habitats.contract import (
     Ability,
-    Action,
     AnyHabitat,
-    Continuous,
-    Discrete,
     HostHabitat,
     JaxHabitat,
 )
 from primordia.habitats.on_host import OnHost
-from primordia.random.trials import normal, words
+from primordia.random.trials import words
 from primordia.settings.tracing import Tracing
 from primordia.testing.report import ALL, ContractError, kept, need, typed
 
@@ -31,27 +29,13 @@ Past: TypeAlias = list[tuple[Any, ...]]
 """For each age from birth on: senses, outcome and tally; None for a value that is not reported."""
 
 
-def actions(kind: Action) -> np.ndarray:
-    """Return pseudo-random actions of a kind for each tick and body, (TICKS, ALL, ...)."""
-    if isinstance(kind, Discrete):
-        return (words(1, TICKS, ALL) % np.uint32(kind.size)).astype(np.int32)
-    if isinstance(kind, Continuous):
-        return normal(1, TICKS, ALL, kind.size)
-    drawn, at, columns = normal(1, TICKS, ALL, kind.columns), 0, words(2, TICKS, ALL, kind.columns)
-    for part in kind.parts:
-        if isinstance(part, Discrete):
-            drawn[..., at] = columns[..., at] % np.uint32(part.size)
-        at += 1 if isinstance(part, Discrete) else part.size
-    return drawn
-
-
 class Lives:
     """The lives of ALL bodies of a habitat. They must be the same however they are played."""
 
     def __init__(self, habitat: AnyHabitat) -> None:
         self.habitat = habitat
         self.words = words(0, ALL, habitat.words)
-        self.actions = actions(habitat.action)
+        self.actions = random_actions(habitat.action, TICKS, ALL)
 
     @contextmanager
     def opened(self, who: np.ndarray, cells: int, watched: bool = False) -> Iterator["Stage"]:

@@ -9,8 +9,7 @@ import numpy as np
 from jax import Array, lax
 
 from primordia.compiled import shared
-from primordia.habitats.bodies import MADE, fresh_bodies
-from primordia.habitats.contract import Discrete
+from primordia.habitats.bodies import MADE, fresh_bodies, random_actions
 from primordia.habitats.gymnax.habitat import Body, Gymnax
 from primordia.random import trials
 
@@ -52,7 +51,8 @@ def measure(habitat: Gymnax) -> Measured:
     """Let bodies act at random, and trace the environment's functions twice."""
     repeats = habitat.simulator.repeats()  # first, since it clears JAX's caches
     born = fresh_bodies(habitat, trials.words(0, BODIES, habitat.words))
-    seen = jax.tree.map(np.asarray, shared(_lived, habitat)(born, _actions(habitat)))
+    actions = random_actions(habitat.action, TICKS, BODIES)
+    seen = jax.tree.map(np.asarray, shared(_lived, habitat)(born, actions))
     wrong = {
         "an observation is not finite": not seen.finite.all(),
         "an observation is outside the declared space": not seen.inside.all(),
@@ -92,11 +92,3 @@ def _seen(habitat: Gymnax, values: dict[str, Any], alive: Array) -> _Seen:
         jnp.isfinite(observed).all(),
         jnp.isfinite(reward).all(),
     )
-
-
-def _actions(habitat: Gymnax) -> np.ndarray:
-    """Return random outputs of brains, int32 (TICKS, BODIES) or float32 (TICKS, BODIES, size)."""
-    kind = habitat.action
-    if isinstance(kind, Discrete):
-        return (trials.words(1, TICKS, BODIES) % np.uint32(kind.size)).astype(np.int32)
-    return trials.normal(1, TICKS, BODIES, kind.size)
