@@ -12,6 +12,7 @@ import pytest
 
 from primordia.comparison.comparison import ComparedArm
 from primordia.comparison.measured import Measured
+from primordia.comparison.tables import effects
 from primordia.experiments import results
 from primordia.history.extinctions import Extinctions
 from primordia.runs.arrays import NEVER
@@ -95,7 +96,7 @@ def test_the_summary_has_a_row_for_each_arm() -> None:
 def test_each_arm_is_compared_with_the_first() -> None:
     """Of the 30 pairs with arm `three`, its lives are longer in 5, equal in 4 and shorter in 21."""
     whole = side_by_side(ONE, THREE, FOUR)
-    head, *rows = rows_of(results.effects(whole))
+    head, *rows = rows_of(results.table(*effects(whole)))
     assert head == ["against one", *whole.outcomes.values()]
     assert [row[0] for row in rows] == ["three", "four"]
     pairs = [(one, three) for one in (4, 5, 6, 7, 8) for three in (2, 3, 4, 5, 6, 6)]
@@ -108,7 +109,7 @@ def test_each_arm_is_compared_with_the_first() -> None:
 
 def test_arms_with_the_same_seeds_have_effects_within_seeds() -> None:
     other = arm("two", [20, 30, 40, 50, 60], 0, lifespan=[5, 6, 7, 8, 9])
-    (row,) = rows_of(results.effects(side_by_side(ONE, other)))[1:]
+    (row,) = rows_of(results.table(*effects(side_by_side(ONE, other))))[1:]
     delta = sum(np.sign(b - a) for a in (4, 5, 6, 7, 8) for b in (5, 6, 7, 8, 9)) / 25
     assert row[3].startswith(f"{delta:+.2f} medium longer; within seeds +1.00; 1.17 (")
 

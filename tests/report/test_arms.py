@@ -11,8 +11,9 @@ import pytest
 from primordia.comparison.comparison import OUTCOMES, ComparedArm, Comparison
 from primordia.comparison.measured import Measured
 from primordia.comparison.survival import survival
+from primordia.comparison.tables import effects
 from primordia.report import arms
-from primordia.report.arms import _effects, _outcomes, _over_time, _survival
+from primordia.report.arms import _outcomes, _over_time, _survival
 from primordia.runs.lives import Lives, joined
 from tests.synthetic import alive, surviving, world_of
 
@@ -58,10 +59,10 @@ def test_outcomes_and_effects_are_those_of_each_arm(compared: Comparison) -> Non
         ["harsh", "0.1", "none", "3 of 3", "50 (40 to 60)", "500 (400 to 600)"],
         ["odd", "0.2", "none", "2 of 3", "2 (1 to >= 30)", "20 (10 to >= 300)"],
     ]
-    effects = _effects(compared)
-    assert effects["head"] == ["against mild", "births to saturation", "ticks to saturation"]
-    assert effects["rows"][0] == ["harsh", "+1.00 later; 2.5", "+1.00 later; 2.5"]
-    assert effects["rows"][1] == [
+    head, rows = effects(compared)
+    assert head == ["against mild", "births to saturation", "ticks to saturation"]
+    assert rows[0] == ["harsh", "+1.00 later; 2.5", "+1.00 later; 2.5"]
+    assert rows[1] == [
         "odd",
         "-0.44 earlier; order known in 88 % of pairs; 0.1",
         "-0.44 earlier; order known in 88 % of pairs; 0.1",

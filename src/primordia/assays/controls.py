@@ -8,7 +8,7 @@ unless all games of the task are the same.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -31,14 +31,8 @@ FOUNDERS = 500
 TYPICAL = 20
 """Number of unselected founders of each world that are judged."""
 OUTCOMES = ("lifespan", "score", "length")
-
-
-class Quartiles(NamedTuple):
-    """The median and the quartiles, over worlds, of one value of each world."""
-
-    median: float
-    q1: float
-    q3: float
+QUARTILES = ("median", "q1", "q3")
+"""Names of a result's values: the median over worlds, and the quartiles."""
 
 
 @dataclass(frozen=True)
@@ -64,21 +58,21 @@ class Standing:
             medians.setdefault(each.world, []).append(spread["median"])
         return {world: float(np.median(values)) for world, values in sorted(medians.items())}
 
-    def over_worlds(self, outcome: str) -> Quartiles | None:
-        """Return the median and the quartiles of `by_world`; None if there is no such outcome."""
-        values = list(self.by_world(outcome).values())
-        return Quartiles(*np.percentile(values, (50, 25, 75)).tolist()) if values else None
-
     def to_dict(self) -> dict[str, Any]:
         """Return plain values for JSON."""
-        spreads = {name: self.over_worlds(name) for name in OUTCOMES}
+        values = {name: list(self.by_world(name).values()) for name in OUTCOMES}
+        spreads = {
+            name: dict(zip(QUARTILES, np.percentile(own, (50, 25, 75)).tolist(), strict=True))
+            for name, own in values.items()
+            if own
+        }
         return {
             "who": self.name,
             "chosen_from": self.chosen_from,
             "organisms": len(self.evaluations),
             "worlds": len({each.world for each in self.evaluations}),
             "games": self.evaluations[0].games,
-            **{name: found._asdict() for name, found in spreads.items() if found is not None},
+            **spreads,
         }
 
 

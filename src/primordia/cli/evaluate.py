@@ -168,7 +168,7 @@ def show_standings(standings: "list[Standing]", title: str, away: bool = False) 
     """
     from primordia.assays.controls import OUTCOMES
 
-    outcomes = [name for name in OUTCOMES if standings[0].over_worlds(name)]
+    outcomes = [name for name in OUTCOMES if standings[0].by_world(name)]
     rows = []
     for each in standings:
         values = each.to_dict()

@@ -229,3 +229,26 @@ def _too_few(compared: Comparison) -> list[str]:
         f"{what} {wanted} worlds of each run (--seeds {wanted}): {few.name} has "
         f"{few.worlds}{words}."
     ]
+
+
+def effects(compared: Comparison) -> tuple[list[str], list[list[str]]]:
+    """Return the head and the rows of a table of each arm against the reference; see `_effect`."""
+    reference, *others = compared.arms
+    rows = [
+        [arm.name, *(_effect(compared.contrast(arm, each), each) for each in compared.outcomes)]
+        for arm in others
+    ]
+    return [f"against {reference.name}", *compared.outcomes.values()], rows
+
+
+def _effect(against: Contrast, outcome: str) -> str:
+    """Return an effect as text: delta over all worlds, delta within seeds, the ratio of medians,
+    and the number of worlds that the effect needs."""
+    within, needed = paired_text(against), needed_text(against)
+    parts = [
+        effect_text(against, outcome),
+        f"within seeds {within}" if within else "",
+        ratio_text(against),
+        f"needs {needed}" if needed else "",
+    ]
+    return "; ".join(filter(None, parts))

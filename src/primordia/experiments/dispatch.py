@@ -6,7 +6,6 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Protocol
 
 from primordia import cores, interrupts
 from primordia.errors import InputError
@@ -20,16 +19,6 @@ MOMENT = 0.5
 """Seconds between two readings of the jobs' states."""
 
 
-class Place(Protocol):
-    """A place where jobs run."""
-
-    def submit(self, job: Job) -> Future[Ending]:
-        """Run a job as soon as there is a free process."""
-
-    def stop(self) -> None:
-        """Stop all jobs, each after a checkpoint if that is possible, and release everything."""
-
-
 def place_for(
     out: Path,
     left: int,
@@ -37,7 +26,7 @@ def place_for(
     ray: str | None,
     checkpoint_every: float = 60.0,
     device: str = "cpu",
-) -> Place:
+) -> Here | OnRay:
     """Return a place for jobs.
 
     Args:
@@ -78,7 +67,7 @@ class Result:
 
 def live_all(
     jobs: list[Job],
-    place: Place,
+    place: Here | OnRay,
     look: Callable[[], object],
     failed: Callable[[Job, Ending, bool], object],
 ) -> Result:

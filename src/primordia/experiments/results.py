@@ -11,15 +11,11 @@ import numpy as np
 
 from primordia import files
 from primordia.comparison.comparison import Comparison, compare
-from primordia.comparison.contrast import Contrast
 from primordia.comparison.measured import Measured
 from primordia.comparison.tables import (
-    effect_text,
+    effects,
     evidence_notes,
-    needed_text,
-    paired_text,
     quartiles_text,
-    ratio_text,
     setting_text,
     spread_text,
 )
@@ -56,7 +52,7 @@ def write(stem: Path, question: str, arms: Sequence[Records]) -> list[Path]:
     """
     compared, counted = compare(arms), [counts(arm) for arm in arms]
     note = " ".join([NOTE, *evidence_notes(compared)])
-    parts = [f"# {question}", summary(compared, counted), effects(compared), note]
+    parts = [f"# {question}", summary(compared, counted), table(*effects(compared)), note]
     ends = [late.last_deaths(arm, compared) for arm in arms] if "pace" in compared.outcomes else []
     if ends:
         parts.insert(2, dying(compared, ends))
@@ -124,30 +120,6 @@ def dying(compared: Comparison, ends: list[list[dict[str, float]]]) -> str:
         for arm, worlds in zip(compared.arms, ends, strict=True)
     ]
     return table(["", *(late.COLUMNS[name] for name in names)], rows)
-
-
-def effects(compared: Comparison) -> str:
-    """Return a table of each arm against the reference: Cliff's delta and the ratio of medians."""
-    reference, *others = compared.arms
-    rows = []
-    for arm in others:
-        contrasts = {outcome: compared.contrast(arm, outcome) for outcome in compared.outcomes}
-        cells = [_effect(each, outcome) for outcome, each in contrasts.items()]
-        rows.append([arm.name, *cells])
-    return table([f"against {reference.name}", *compared.outcomes.values()], rows)
-
-
-def _effect(against: Contrast, outcome: str) -> str:
-    """Return an effect as text: delta over all worlds, delta within seeds, the ratio of medians,
-    and the number of worlds that the effect needs."""
-    within, needed = paired_text(against), needed_text(against)
-    parts = [
-        effect_text(against, outcome),
-        f"within seeds {within}" if within else "",
-        ratio_text(against),
-        f"needs {needed}" if needed else "",
-    ]
-    return "; ".join(filter(None, parts))
 
 
 def table(head: list[str], rows: list[list[Any]]) -> str:

@@ -30,25 +30,16 @@ def chosen(
     """
     if organism is not None and extant:
         raise InputError("an organism's ID and --extant exclude each other; give one of them")
-    part = whole if organism is None and world is None else _of_world(whole, world or 0)
+    part = whole
+    if organism is not None or world is not None:
+        whole.lives.check_world(world or 0)
+        rows = np.flatnonzero(whole.lives.world == (world or 0))
+        part = whole.take(slice(int(rows[0]), int(rows[-1]) + 1))
     if organism is not None:
         part = _with_ancestors(part, np.array([part.lives.row(organism, world or 0)]))
     elif extant:
         part = _with_ancestors(part, np.flatnonzero(~part.lives.died))
     return _collapsed(part) if collapse else part
-
-
-def _of_world(whole: Phylogeny, world: int) -> Phylogeny:
-    """Return the organisms of one world.
-
-    Raises:
-        InputError: nothing was born in the world.
-    """
-    rows = np.flatnonzero(whole.lives.world == world)
-    if not len(rows):
-        last = whole.lives.worlds - 1
-        raise InputError(f"nothing was born in world {world}; the worlds are 0 to {last}")
-    return whole.take(slice(int(rows[0]), int(rows[-1]) + 1))
 
 
 def _collapsed(whole: Phylogeny) -> Phylogeny:

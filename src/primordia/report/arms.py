@@ -5,10 +5,9 @@ from typing import Any
 
 from primordia.comparison.comparison import Comparison, compare
 from primordia.comparison.tables import (
-    effect_text,
+    effects,
     evidence_notes,
     quartiles_text,
-    ratio_text,
     setting_text,
 )
 from primordia.figures import style
@@ -33,7 +32,10 @@ def arms(runs: Sequence[Records]) -> dict[str, Any]:
         return {"tables": [], "notes": [], "panels": _over_time(runs, colours)}
     compared = compare(runs)
     return {
-        "tables": [_outcomes(compared), _effects(compared)],
+        "tables": [
+            _outcomes(compared),
+            dict(zip(("title", "head", "rows"), ("Effects", *effects(compared)), strict=True)),
+        ],
         "notes": [
             "Medians over worlds, with quartiles; a world that stopped unsaturated is treated as"
             " censored. Effects: Cliff's delta, and the ratio of medians.",
@@ -61,18 +63,6 @@ def _outcomes(compared: Comparison) -> dict[str, Any]:
     ]
     head = ["arm", *settings, "worlds saturated", *compared.outcomes.values()]
     return {"title": "Outcomes", "head": head, "rows": rows}
-
-
-def _effects(compared: Comparison) -> dict[str, Any]:
-    """Return a table of the effects of all other arms against the reference."""
-    reference, *others = compared.arms
-    rows = []
-    for arm in others:
-        found = {name: compared.contrast(arm, name) for name in compared.outcomes}
-        texts = (f"{effect_text(each, name)}; {ratio_text(each)}" for name, each in found.items())
-        rows.append([arm.name, *texts])
-    head = [f"against {reference.name}", *compared.outcomes.values()]
-    return {"title": "Effects", "head": head, "rows": rows}
 
 
 def _survival(compared: Comparison, colours: Sequence[str]) -> Panel:

@@ -60,9 +60,7 @@ class TensorBoard:
             with suppress(OSError):  # all rows were flushed by `add`
                 writer.close()
 
-    def close(self) -> None:
-        """Close all files."""
-        self.finish()
+    close = finish
 
     def _begun(self, world: World) -> Any:
         folder, ending = self._folder / world.name, f".primordia-{world.identity}"

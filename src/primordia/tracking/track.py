@@ -9,29 +9,15 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack, closing
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
 
 from primordia import interrupts
 from primordia.errors import InputError
-from primordia.tracking.reader import Reader, Row, World
+from primordia.tracking.reader import Reader
 from primordia.tracking.tensorboard import TensorBoard
 from primordia.tracking.weights_and_biases import WeightsAndBiases
 
 MOMENT = 0.2
 """Longest time until a signal is noticed, in seconds."""
-
-
-class Dashboard(Protocol):
-    """A writer of files for a program that shows curves."""
-
-    def add(self, world: World, rows: list[Row]) -> None:
-        """Append rows of a world."""
-
-    def finish(self) -> None:
-        """Complete the files of all worlds so far; no more rows follow."""
-
-    def close(self) -> None:
-        """Finish, and release all resources."""
 
 
 @dataclass(frozen=True)
@@ -103,10 +89,12 @@ def track(
         )
 
 
-def _opened(tensorboard: str | Path | None, wandb: str | Path | None) -> list[Dashboard]:
+def _opened(
+    tensorboard: str | Path | None, wandb: str | Path | None
+) -> list[TensorBoard | WeightsAndBiases]:
     if tensorboard is None and wandb is None:
         raise InputError("name a folder to write into: --tensorboard DIR, --wandb DIR, or both")
-    opened: list[Dashboard] = []
+    opened: list[TensorBoard | WeightsAndBiases] = []
     if tensorboard is not None:
         opened.append(TensorBoard(Path(tensorboard)))
     if wandb is not None:
