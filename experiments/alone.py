@@ -36,8 +36,8 @@ def rows_of(run: Records) -> list[Row]:
     done = run.ends >= (run.config.stop.ticks or 0)
     for world in np.flatnonzero(done).tolist():
         late = np.flatnonzero(run.lives.late(LATE) & (run.lives.world == world))
-        numbers = [(int(number), world) for number in run.lives.id[spaced(late, EACH)]]
-        lived = lifespans_in_games(players_of(run, numbers), GAMES, TICKS).mean()
+        players = players_of(run, spaced(late, EACH))
+        lived = lifespans_in_games(players, GAMES, TICKS).mean()
         found.append({"seed": int(run.world_seeds[world]), "alone": round(float(lived), 1)})
     return found
 

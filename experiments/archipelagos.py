@@ -66,8 +66,7 @@ class _World:
         home = islands.of_cells(lives.cell[late])
         rows = np.concatenate([spaced(late[home == k], EACH) for k in range(islands.count)])
         self.home = islands.of_cells(lives.cell[rows])
-        numbers = [(int(number), world) for number in lives.id[rows]]
-        self.lived = everywhere(run, players_of(run, numbers), world, GAMES, TICKS)
+        self.lived = everywhere(run, players_of(run, rows), world, GAMES, TICKS)
         if (self.seed, len(rows)) not in best:
             founders = founders_of(run, np.array([world]), np.array([len(rows)]))[2]
             best[self.seed, len(rows)] = self._in_fresh_games(founders)

@@ -67,8 +67,7 @@ def _traits(run: Records, rows: np.ndarray) -> Row:
 
 def _lives(run: Records, rows: np.ndarray) -> dict[str, float]:
     """Return how long organisms live in their own bodies and in the founder's, and founders, in ticks."""
-    numbers = zip(run.lives.id[rows].tolist(), run.lives.world[rows].tolist(), strict=True)
-    players = players_of(run, list(numbers))
+    players = players_of(run, rows)
     usual = players.genomes.copy()
     usual[:, -run.layout.genes :] = 0
     world = run.lives.world[rows[:1]]

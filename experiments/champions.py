@@ -11,10 +11,11 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import named
+import numpy as np
 
 import primordia
 from primordia.brains import genomes
-from primordia.history.rebuilding import rebuild_all
+from primordia.history import pedigree
 
 
 def report(file: Path) -> None:
@@ -29,8 +30,8 @@ def report(file: Path) -> None:
     }
     path = file.parent / "genomes" / f"{file.stem}.safetensors"
     path.parent.mkdir(exist_ok=True)
-    kept = rebuild_all(run, [(organism.id, organism.world) for organism in champions])
-    genomes.write(path, run.layout, kept, about)
+    rows = np.array([run.lives.row(organism.id, organism.world) for organism in champions])
+    genomes.write(path, run.layout, pedigree.genomes(run, rows), about)
     print(path)
 
 

@@ -96,7 +96,7 @@ def invented(monkeypatch: pytest.MonkeyPatch) -> Any:
     third = [(0, 0, False), (2, 3, True), (3, 8, True), (4, 9, True), (48, 0, False)]
     lives = worlds_of(first, [(5, 2, True)], third, until=50)
     lives.inherited[[0, 1, 32, 33]] = True
-    monkeypatch.setattr(controls, "players_of", lambda run, numbers: Seats(np.array(numbers)))
+    monkeypatch.setattr(controls, "players_of", lambda run, rows: Seats(rows))
 
     def founders_of(
         _: Any, worlds: np.ndarray, counts: np.ndarray, island: str | None = None
@@ -128,7 +128,9 @@ def test_champions_and_the_living_are_those_of_worlds_with_births(invented: Any)
     assert champion.numbers == [(18, 0), (3, 2)]
     assert alive.numbers == [(30, 0), (31, 0), (0, 2), (4, 2)]
     for group in (champion, alive):
-        assert [*map(tuple, group.players.rows.tolist())] == group.numbers
+        rows = group.players.rows
+        own = zip(invented.lives.id[rows], invented.lives.world[rows], strict=True)
+        assert list(own) == group.numbers
     champion, alive = evolved(invented, 2)
     assert (champion.numbers, champion.chosen_from) == ([(3, 2)], 4)
     assert alive.numbers == [(0, 2), (4, 2)]

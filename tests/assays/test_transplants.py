@@ -41,7 +41,7 @@ def test_natives_live_on_each_island_as_in_a_plain_world(isles: primordia.Run) -
             native = np.flatnonzero(late & (islands.of_cells(lives.cell) == home))
             rows = native[((np.arange(EACH) + 0.5) * len(native) / EACH).astype(int)]
             assert each.natives[home] == EACH < len(native)
-            players = players_of(run, [(int(number), each.world) for number in lives.id[rows]])
+            players = players_of(run, rows)
             for place in range(3):
                 plain = players._replace(
                     habitat=at(run.config.build_habitat(), islands.bounds[place]),

@@ -93,7 +93,7 @@ def test_games_on_another_island_are_those_of_its_habitat(isles: primordia.Run) 
     )
     assert home == same != away
     run = isles.opened()
-    players = players_of(run, [(each.id, each.world) for each in born])
+    players = players_of(run, np.array([each.row for each in born]))
     there = moved(run, players, np.array([0, 1]), 1)
     assert there.island is not None
     assert there.island.tolist() == [1, 1]

@@ -13,7 +13,7 @@ from primordia.brains import genomes
 from primordia.brains.recurrent import Recurrent
 from primordia.config import load
 from primordia.errors import InputError
-from primordia.history.rebuilding import rebuild_all
+from primordia.history import pedigree
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from primordia.runs.verify import verify
@@ -62,12 +62,14 @@ def test_founders_of_a_run_have_the_genomes_of_its_ancestors(
     births = run.table("births").to_pylist()
     founders = [birth for birth in births if birth["cause"] == "founder"]
     ends = [(birth["id"], birth["world"]) for birth in founders[:20] + founders[-20:]]
+    opened = Archive(run.path)
+    rows = np.array([opened.lives.row(*each) for each in ends])
     expected = ANCESTORS[[(2 + number + world) % 3 for number, world in ends]]
-    np.testing.assert_array_equal(rebuild_all(Archive(run.path), ends), expected)
+    np.testing.assert_array_equal(pedigree.genomes(opened, rows), expected)
     first = LAYOUT.split(expected[0])
     for name, block in run.organism(*ends[0]).policy().weights.items():
         np.testing.assert_array_equal(block, first[name])
-    assert verify(Archive(run.path)) == []
+    assert verify(opened) == []
     again = primordia.run(str(run.path / "config.toml"), tmp_path / "again")
     digests, before = ([w["digest"] for w in each.info()["worlds"]] for each in (again, run))
     assert digests == before
@@ -81,7 +83,7 @@ def test_genomes_that_descend_from_ancestors_are_rebuilt_by_the_same_code(
     values = merged(MEADOW, SMALL | {"ancestors": [str(tmp_path / "a.safetensors")]})
     loop.start(config(values), tmp_path / "run")
     with jax.log_compiles():
-        rebuild_all(Archive(tmp_path / "run"), [(0, 0), (1, 0), (2, 0)])
+        pedigree.genomes(Archive(tmp_path / "run"), np.arange(3))
     assert caplog.text.count("Finished XLA compilation of jit(_repeat)") == 1
 
 

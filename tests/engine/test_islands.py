@@ -136,8 +136,7 @@ def test_games_are_played_on_the_island_of_each_player(run: Path) -> None:
     """They are the games of a plain world that is like the island everywhere."""
     opened = Archive(run)
     islands = opened.config.islands
-    numbers = [(int(number), 0) for number in opened.lives.of_world(0).id[:30]]
-    players = players_of(opened, numbers)
+    players = players_of(opened, np.flatnonzero(opened.lives.world == 0)[:30])
     assert set(players.island.tolist()) == {0, 1, 2}
     together = lifespans(players, 60)
     for number in range(islands.count):

@@ -7,7 +7,8 @@ import pytest
 
 import primordia
 from primordia.errors import InputError
-from primordia.history.rebuilding import descent, rebuild_all
+from primordia.history import pedigree
+from primordia.history.rebuilding import descent
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.worlds import HERD, config
@@ -28,7 +29,9 @@ def assert_rebuilt(run: Path) -> None:
     alive = living(run)
     assert len(alive) > 5
     assert len({genome.tobytes() for *_, genome in alive}) > 3
-    rebuilt = rebuild_all(Archive(run), [(organism, world) for world, organism, _ in alive])
+    opened = Archive(run)
+    rows = np.array([opened.lives.row(organism, world) for world, organism, _ in alive])
+    rebuilt = pedigree.genomes(opened, rows)
     for (*_, genome), again in zip(alive, rebuilt, strict=True):
         np.testing.assert_array_equal(bits(again), bits(genome))
 
@@ -75,7 +78,8 @@ def test_a_copy_has_its_parents_genome_and_a_mutant_has_not(herd: Path) -> None:
     opened, noise = Archive(herd), []
     births = [row for row in opened.table("births").to_pylist() if row["cause"] != "founder"][-200:]
     pairs = [(birth[name], birth["world"]) for birth in births for name in ("id", "parent")]
-    rebuilt = rebuild_all(opened, list(dict.fromkeys(pairs)))
+    rows = np.array([opened.lives.row(*pair) for pair in dict.fromkeys(pairs)])
+    rebuilt = pedigree.genomes(opened, rows)
     genome = dict(zip(dict.fromkeys(pairs), rebuilt, strict=True))
     for birth in births:
         child, parent = (genome[birth[name], birth["world"]] for name in ("id", "parent"))

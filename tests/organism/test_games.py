@@ -182,15 +182,16 @@ def test_games_differ_in_course_if_senses_or_food_of_a_tick_differ() -> None:
 def test_settings_are_given_in_a_table_or_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
     """A table may have names that are arguments too, such as `senses`. A keyword outweighs the table."""
     asked: list[Any] = []
-    monkeypatch.setattr(evaluation, "players_of", lambda run, organisms: f"players {organisms}")
+    monkeypatch.setattr(evaluation, "players_of", lambda run, rows: f"players {rows}")
     monkeypatch.setattr(evaluation, "judged", lambda *given, **named: asked.append((given, named)))
-    run: Any = SimpleNamespace(config="a config", made_on="cpu")
+    lives = SimpleNamespace(row=lambda *each: {(9, 1): 6}[each])
+    run: Any = SimpleNamespace(config="a config", lives=lives, made_on="cpu")
     table = {"senses": [49], "sticky": 0.25}
     evaluation.evaluate(run, [(9, 1)], games=3, senses="frozen", habitat=table, sticky=0.5, noops=0)
     evaluation.evaluate(run, [(9, 1)])
     plain = {"games": 30, "ticks": 100_000, "senses": "live", "habitat": {}, "there": None}
     wanted = {"senses": [49], "sticky": 0.5, "noops": 0}
-    players = ("a config", "players [(9, 1)]", [(9, 1)])
+    players = ("a config", "players [6]", [(9, 1)])
     assert asked == [
         (players, {**plain, "games": 3, "senses": "frozen", "habitat": wanted}),
         (players, plain),

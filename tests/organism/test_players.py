@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from primordia.history import pedigree
 from primordia.organism.playing import players
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
@@ -39,7 +40,7 @@ def test_founders_of_a_garden_have_keys_and_genomes_of_their_worlds(
 
     monkeypatch.setattr(players, "founders", genomes)
     monkeypatch.setattr(players, "PastClimate", Past)
-    monkeypatch.setattr(players, "_players", lambda *given: given)
+    monkeypatch.setattr(players, "as_players", lambda *given: given)
     seeds, ends = np.array([11, 22, 33], np.uint64), np.array([500, 600, 700])
     islands = Islands(("sea", "lagoon"), (0, 4, 12))
     run: Any = SimpleNamespace(
@@ -79,17 +80,15 @@ def test_organisms_play_with_keys_and_the_last_climate_of_their_worlds(
     def taken(rows: np.ndarray) -> Any:
         return rows.view(Table)
 
-    monkeypatch.setattr(players, "rebuild_all", lambda run, organisms: list(organisms))
+    monkeypatch.setattr(pedigree, "genomes", lambda run, rows: rows.tolist())
     monkeypatch.setattr(players, "PastClimate", Past)
-    monkeypatch.setattr(players, "_players", lambda *given: given[1:])
-    wanted = [(6, 2), (7, 0), (5, 2)]
-    rows = {(6, 2): 30, (7, 0): 4, (5, 2): 29}
-    lives = SimpleNamespace(row=lambda *each: rows[each], take=taken)
+    monkeypatch.setattr(players, "as_players", lambda *given: given[1:])
+    lives = SimpleNamespace(take=taken)
     seeds, ends = np.array([11, 22, 33], np.uint64), np.array([500, 600, 700])
     run: Any = SimpleNamespace(lives=lives, world_seeds=seeds, ends=ends)
-    genomes, keys, climate, cells = tuple[Any, ...](players.players_of(run, wanted))
+    genomes, keys, climate, cells = tuple[Any, ...](players.players_of(run, np.array([30, 4, 29])))
     assert cells.tolist() == [50, 60, 70]
-    assert genomes == wanted
+    assert genomes == [30, 4, 29]
     numbers = [(33, 6), (11, 7), (33, 5)]
     assert pairs(keys) == [key_of(seed, Purpose.EVALUATION, number) for seed, number in numbers]
     assert climate == {"lives": [30, 4, 29], "ticks": [700, 500, 700]}

@@ -50,7 +50,7 @@ def players(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFac
     run = primordia.load(folder)
     lives = run.lives()
     some = [*range(0, min(len(lives), 60), 3), int(np.argmax(lives.lifespan))]
-    return players_of(run.opened(), [(int(lives.id[row]), int(lives.world[row])) for row in some])
+    return players_of(run.opened(), np.array(some))
 
 
 @pytest.fixture(autouse=True)

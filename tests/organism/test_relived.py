@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from primordia.errors import InputError
-from primordia.organism.reliving import relived
+from primordia.history import pedigree
 from primordia.organism.reliving.relived import RelivedLife
 
 
@@ -23,25 +23,25 @@ def test_an_organism_older_than_a_fork_begins_with_the_state_of_the_fork(
     born: int, given: Any, begin: str | None, exact: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The fork is at tick 40. A life begins with a state only if the habitat can save bodies."""
-    monkeypatch.setattr(relived, "rebuild", lambda run, *place: np.float32([*place]))
+    monkeypatch.setattr(pedigree, "genomes", lambda run, rows: np.float32([[*rows, 2]]))
     lives = SimpleNamespace(
-        row=lambda organism, world: {(5, 1): 0}[organism, world],
+        row=lambda organism, world: {(5, 1): 7}[organism, world],
         take=lambda rows: SimpleNamespace(
-            born=np.array([born]), id=np.array([5]), cell=np.array([3])
+            inherited=np.array([born <= 40]), id=np.array([5]), cell=np.array([3])
         ),
     )
     layout = SimpleNamespace(split=lambda genome: {"all": genome})
     run: Any = SimpleNamespace(
         path="RUN",
         lives=lives,
-        config=SimpleNamespace(fork=SimpleNamespace(tick=40)),
+        config=SimpleNamespace(seeds=2),
         law=SimpleNamespace(heredity=SimpleNamespace(layout=layout)),
         habitat=SimpleNamespace(exact=exact),
         origin="origin",
     )
     if begin is None or exact:
         life = RelivedLife.of(run, 5, 1, given)
-        assert (life.stored, life.genome["all"].tolist()) == (begin, [[5.0, 1.0]])
+        assert (life.stored, life.genome["all"].tolist()) == (begin, [[7.0, 2.0]])
         return
     place = "the fork" if given is None else "the checkpoint"
     with pytest.raises(

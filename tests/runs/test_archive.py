@@ -4,6 +4,7 @@ from collections import Counter
 from pathlib import Path
 from unittest.mock import MagicMock
 
+import numpy as np
 import pytest
 
 import primordia
@@ -12,7 +13,7 @@ from primordia.config import Config
 from primordia.errors import Trouble
 from primordia.history.foraging import foraging
 from primordia.history.info import info
-from primordia.history.rebuilding import rebuild_all
+from primordia.history.pedigree import genomes
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import loop, recorder
 from primordia.runs.archive import Archive
@@ -79,7 +80,7 @@ def test_the_law_is_built_once_and_only_for_living(
     monkeypatch.setattr(Config, "build_law", lambda *given: build(*given))
     run = Archive(mill)
     foraging(run)
-    rebuild_all(run, [(0, 0), (0, 1)])
+    genomes(run, np.array([0, len(run.lives) - 1]))
     assert build.call_count == 0
     for world in (0, 1):
         RelivedLife.of(run, 0, world)

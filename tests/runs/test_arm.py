@@ -13,7 +13,7 @@ from primordia.api import Run
 from primordia.brains import genomes
 from primordia.errors import InputError
 from primordia.history.foraging import foraging
-from primordia.history.rebuilding import rebuild_all
+from primordia.history.pedigree import genomes as genomes_of
 from primordia.runs import loop
 from primordia.runs.opening import opened, split_name
 from primordia.runs.schema import TABLES
@@ -71,9 +71,8 @@ def test_organisms_of_an_arm_are_those_of_one_run(both: tuple[Run, Run]) -> None
     """In the last world, which is the first of its run: genome, games, and a life lived again."""
     whole, arm = (run.oldest(1) for run in both)
     assert repr(arm) == repr(whole)
-    lives = both[0].lives()
-    chosen = [(int(lives.id[row]), int(lives.world[row])) for row in range(0, len(lives), 40)]
-    one, other = (rebuild_all(run.opened(), chosen) for run in both)
+    rows = np.arange(0, len(both[0].lives()), 40)
+    one, other = (genomes_of(run.opened(), rows) for run in both)
     np.testing.assert_array_equal(other, one)
     results = (each.evaluate(games=3, ticks=50).to_dict() for each in (whole, arm))
     assert next(results) == next(results)

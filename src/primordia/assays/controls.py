@@ -127,9 +127,9 @@ def evolved(run: Records, world: int | None = None, island: str | None = None) -
     lives, champions, native = run.lives, _champions(run, world, island), born_on(run, island)
     alive = np.flatnonzero(~lives.died & native & np.isin(lives.world, lives.world[champions]))
     most = int(_births(run, lives.world[champions], native).max())
-    both = lives.take(np.concatenate([champions, alive]))
-    numbers = list(zip(both.id.tolist(), both.world.tolist(), strict=True))
-    players = players_of(run, numbers)  # at once, since they have most of their ancestors in common
+    rows = np.concatenate([champions, alive])
+    numbers = list(zip(lives.id[rows].tolist(), lives.world[rows].tolist(), strict=True))
+    players = players_of(run, rows)  # at once, since they have most of their ancestors in common
     best, others = slice(0, len(champions)), slice(len(champions), None)
     found = [Group(run, "champion", most, numbers[best], players.take(best))]
     if len(alive):

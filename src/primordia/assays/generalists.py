@@ -128,8 +128,7 @@ def generalists(
     for world in np.unique(lives.world[late]).tolist():
         rows = late[lives.world[late] == world]
         rows = spaced(rows[:-1] if len(rows) > 1 else rows, each)
-        numbers = [(int(number), world) for number in lives.id[rows]]
-        lived = everywhere(run, players_of(run, numbers), world, games, ticks)
+        lived = everywhere(run, players_of(run, rows), world, games, ticks)
         _, _, fresh = founders_of(run, np.array([world]), np.array([len(rows)]))
         best = everywhere(run, fresh, world, games, ticks).max(axis=0)
         ratio = lived / best
@@ -153,7 +152,7 @@ def _line(
     line = descent(run.lives, int(run.lives.id[row]), world)
     places = series.places(len(line), most)
     chosen = run.lives.take(line[places])
-    players = players_of(run, [(int(number), world) for number in chosen.id])
+    players = players_of(run, line[places])
     fresh = stream(wide(run.world_seeds[[world]]), Purpose.REBIRTH, wide(run.lives.id[[row]]))
     keys = fresh.take(np.zeros(len(places), np.intp))
     lived = everywhere(run, players._replace(keys=keys), world, games, ticks)

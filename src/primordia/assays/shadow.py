@@ -10,8 +10,6 @@ due to selection (Bedau & Packard 1992).
 from dataclasses import dataclass
 from typing import Any
 
-import jax
-import jax.numpy as jnp
 import numpy as np
 
 from primordia.comparison.pairs import sign_test
@@ -21,8 +19,8 @@ from primordia.history import pedigree
 from primordia.history.climate import PastClimate
 from primordia.history.islands import born_on
 from primordia.history.series import spaced
-from primordia.law.metabolism import Rates
 from primordia.organism.playing.games import Players, lifespans
+from primordia.organism.playing.players import as_players
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
 from primordia.runs.records import Records, on_its_device
@@ -160,7 +158,4 @@ def reborn(run: Records, rows: np.ndarray, redrawn: bool) -> Players:
     lives = run.lives.take(rows)
     climate = PastClimate(run).of_lives(lives, lives.born)
     keys = stream(wide(run.world_seeds[lives.world]), Purpose.REBIRTH, wide(lives.id))
-    rates = Rates.of(jax.tree.map(jnp.asarray, climate))
-    genomes = pedigree.genomes(run, rows, redrawn)
-    habitat, island = run.config.build_habitat(), run.config.islands.of_cells(lives.cell)
-    return Players(run.law, habitat, genomes, keys, rates, island)
+    return as_players(run, pedigree.genomes(run, rows, redrawn), keys, climate, lives.cell)

@@ -90,12 +90,11 @@ def of_run(
     if not len(rows):
         raise InputError(f"{run.path}: nothing has been born since the fork")
     chosen = lives.take(rows)
-    numbers = list(zip(chosen.id.tolist(), chosen.world.tolist(), strict=True))
     where = changed(run.config, habitat or {})
     return Subjects(
         source=str(run.path),
         config=where,
-        players=players_of(run, numbers)._replace(habitat=where.build_habitat()),
+        players=players_of(run, rows)._replace(habitat=where.build_habitat()),
         organism=chosen.id,
         world=chosen.world.astype(np.int64),
         notes=run.notes_of(chosen),

@@ -91,9 +91,7 @@ def transplant(
     for world in np.unique(lives.world[late]).tolist():
         of_world = lives.world[late] == world
         rows = [spaced(late[of_world & (native == k)], each) for k in range(islands.count)]
-        chosen = lives.take(np.concatenate(rows))
-        numbers = list(zip(chosen.id.tolist(), chosen.world.tolist(), strict=True))
-        own = everywhere(run, players_of(run, numbers), world, games, ticks)
+        own = everywhere(run, players_of(run, np.concatenate(rows)), world, games, ticks)
         _, _, fresh = founders_of(run, np.array([world]), np.array([each]))
         groups = np.split(own, np.cumsum([len(some) for some in rows])[:-1])
         groups.append(everywhere(run, fresh, world, games, ticks))

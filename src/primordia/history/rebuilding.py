@@ -1,6 +1,4 @@
-"""Lineages: the genome of any organism rebuilt from birth records alone, to the last bit."""
-
-from collections.abc import Sequence
+"""Lines of descent of one run: the rows, genomes and bodies of an organism's ancestors."""
 
 import numpy as np
 
@@ -9,25 +7,6 @@ from primordia.history.traits import factors_of
 from primordia.law.world import BirthCause
 from primordia.runs.lives import Lives
 from primordia.runs.records import Records
-
-
-def rebuild(run: Records, organism: int, world: int = 0) -> np.ndarray:
-    """Return the genome of an organism, float32 (P,), with blocks of weights in the brain's order.
-
-    Args:
-        run: the organism's run.
-        organism: birth number, `id` in the records.
-        world: the organism's world.
-
-    Raises:
-        InputError: no such organism was born.
-    """
-    return rebuild_all(run, [(organism, world)])[0]
-
-
-def rebuild_all(run: Records, organisms: Sequence[tuple[int, int]]) -> np.ndarray:
-    """Return the genomes of K organisms, by birth number and world, float32 (K, P); see `rebuild`."""
-    return pedigree.genomes(run, np.array([run.lives.row(*each) for each in organisms], np.int64))
 
 
 def descent(lives: Lives, organism: int, world: int) -> np.ndarray:
@@ -43,6 +22,23 @@ def descent(lives: Lives, organism: int, world: int) -> np.ndarray:
             break
         rows.append(parent)
     return np.array(rows[::-1])
+
+
+def ancestors(run: Records, record: Lives) -> list[tuple[Lives, np.ndarray]]:
+    """Return the records (1,) and genomes, float32 (P,), of an organism's ancestors, oldest first.
+
+    The oldest is a founder, or the last ancestor that was alive at the fork that the run began with.
+
+    Args:
+        run: the organism's run.
+        record: the organism's own record, (1,).
+    """
+    lives = run.lives
+    rows = descent(lives, int(record.id[0]), int(record.world[0]))[:-1]
+    at_fork = np.flatnonzero(lives.inherited[rows])
+    rows = rows[at_fork[-1] if len(at_fork) else 0 :]
+    genomes = pedigree.genomes(run, rows)
+    return [(lives.take(row), genome) for row, genome in zip(rows[:, None], genomes, strict=True)]
 
 
 def changes(run: Records, organism: int, world: int = 0) -> np.ndarray:

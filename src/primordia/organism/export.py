@@ -3,10 +3,12 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+
 from primordia.brains import genomes
 from primordia.errors import InputError
+from primordia.history import pedigree
 from primordia.history.islands import names_of
-from primordia.history.rebuilding import rebuild_all
 from primordia.organism.policy import Policy
 from primordia.runs.records import Records
 
@@ -33,14 +35,14 @@ def export(
         Trouble: the file cannot be written.
     """
     chosen = tuple(organisms) or (int(run.lives.id[run.lives.oldest(world)]),)
-    rebuilt = rebuild_all(run, [(each, world) for each in chosen])
+    rows = np.array([run.lives.row(each, world) for each in chosen])
+    rebuilt = pedigree.genomes(run, rows)
     about = {
         "task": run.config.task,
         "seed": str(run.world_seeds[world]),
         "organisms": " ".join(map(str, chosen)),
     }
     if run.config.islands.count > 1:
-        rows = [run.lives.row(each, world) for each in chosen]
         about["islands"] = " ".join(names_of(run.config.islands, run.lives.cell[rows]) or ())
     if out.suffix != ONNX:
         genomes.write(out, run.layout, rebuilt, about)

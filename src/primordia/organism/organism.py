@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from primordia.history import pedigree
 from primordia.history.islands import names_of
-from primordia.history.rebuilding import descent, rebuild
+from primordia.history.rebuilding import descent
 from primordia.law.world import BirthCause, Cause
 from primordia.organism.playing.evaluation import Evaluation, evaluate
 from primordia.organism.policy import Policy
@@ -91,7 +92,7 @@ class Organism:
 
     def genome(self) -> np.ndarray:
         """Return the weights, float32 (P,), rebuilt from the records."""
-        return rebuild(self.run, self.id, self.world)
+        return pedigree.genomes(self.run, np.array([self.row]))[0]
 
     def policy(self) -> Policy:
         """Return the brain as `policy(senses) -> action`."""

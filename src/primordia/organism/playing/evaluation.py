@@ -124,7 +124,7 @@ def evaluate(
     """
     if not organisms:
         return []
-    own = players_of(run, organisms)
+    own = players_of(run, np.array([run.lives.row(*each) for each in organisms]))
     return judged(
         run.config,
         own,

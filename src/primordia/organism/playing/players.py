@@ -1,14 +1,14 @@
 """Players of a run: recorded organisms and fresh founders, in the habitat of their task."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import jax
 import numpy as np
 
+from primordia.history import pedigree
 from primordia.history.climate import PastClimate
 from primordia.history.founders import founders
 from primordia.history.islands import number_of
-from primordia.history.rebuilding import rebuild_all
 from primordia.law.metabolism import Rates
 from primordia.organism.playing.games import Players
 from primordia.random.keys import Purpose, stream
@@ -16,17 +16,12 @@ from primordia.random.wide import Wide, wide
 from primordia.runs.records import Records
 
 
-def players_of(run: Records, organisms: Sequence[tuple[int, int]]) -> Players:
-    """Return organisms, by birth number and world, as players.
-
-    Raises:
-        InputError: no such organism was born.
-    """
-    genomes = rebuild_all(run, organisms)
-    lives = run.lives.take(np.array([run.lives.row(*each) for each in organisms]))
+def players_of(run: Records, rows: np.ndarray) -> Players:
+    """Return organisms, by their rows in the run's lives, int (K,), as players."""
+    lives = run.lives.take(rows)
     climate = PastClimate(run).of_lives(lives, run.ends[lives.world])
     keys = evaluation_keys(run, lives.world, lives.id)
-    return _players(run, genomes, keys, climate, lives.cell)
+    return as_players(run, pedigree.genomes(run, rows), keys, climate, lives.cell)
 
 
 def founders_of(
@@ -54,7 +49,7 @@ def founders_of(
     cell = here.start + number * len(here) // np.repeat(counts, counts)
     climate = PastClimate(run).of_cells(world, cell, run.ends[world])
     keys = stream(wide(run.world_seeds[world]), Purpose.CONTROL, wide(number))
-    return world, number, _players(run, np.concatenate(genomes), keys, climate, cell)
+    return world, number, as_players(run, np.concatenate(genomes), keys, climate, cell)
 
 
 def moved(run: Records, players: Players, worlds: np.ndarray, island: int) -> Players:
@@ -68,7 +63,7 @@ def moved(run: Records, players: Players, worlds: np.ndarray, island: int) -> Pl
     """
     cells = np.full(len(worlds), run.config.islands.bounds[island])
     climate = PastClimate(run).of_cells(worlds, cells, run.ends[worlds])
-    rates = Rates.of({name: jax.device_put(values) for name, values in climate.items()})
+    rates = Rates.of(jax.device_put(climate))
     return players._replace(rates=rates, island=np.full(len(worlds), island))
 
 
@@ -77,13 +72,13 @@ def evaluation_keys(run: Records, world: np.ndarray, number: np.ndarray) -> Wide
     return stream(wide(run.world_seeds[world]), Purpose.EVALUATION, wide(number))
 
 
-def _players(
+def as_players(
     run: Records,
     genomes: np.ndarray,
     keys: Wide,
     climate: Mapping[str, np.ndarray],
     cells: np.ndarray,
 ) -> Players:
-    rates = Rates.of({name: jax.device_put(values) for name, values in climate.items()})
-    island = run.config.islands.of_cells(cells)
+    """Return K players with these genomes, float32 (K, P), and keys, in their cells' climate (K,)."""
+    rates, island = Rates.of(jax.device_put(climate)), run.config.islands.of_cells(cells)
     return Players(run.law, run.config.build_habitat(), genomes, keys, rates, island)

@@ -24,9 +24,10 @@ from primordia.config import Config
 from primordia.errors import InputError, Trouble
 from primordia.habitats.archipelago import at, body_in
 from primordia.habitats.contract import AnyHabitat
+from primordia.history import pedigree
 from primordia.history.births import place_in
 from primordia.history.climate import PastClimate
-from primordia.history.rebuilding import rebuild
+from primordia.history.rebuilding import ancestors
 from primordia.law.genesis import words_of
 from primordia.law.law import Law
 from primordia.law.life import BODILY, Vitals, first_memory, inherits_memory
@@ -35,7 +36,6 @@ from primordia.law.world import Cause, Climate
 from primordia.organism.mind import Mind
 from primordia.organism.reliving.in_jax import LifeInJax
 from primordia.organism.reliving.instant import Instant, Stretch
-from primordia.organism.reliving.line import is_older, line_of
 from primordia.organism.reliving.on_host import LifeOnHost
 from primordia.progress import steps
 from primordia.random.keys import Purpose, bits, chance, stream
@@ -90,9 +90,8 @@ class RelivedLife:
         Raises:
             InputError: no such organism was born, or its life cannot be lived again.
         """
-        record = run.lives.take(np.array([run.lives.row(organism, world)]))
-        genome = rebuild(run, organism, world)
-        return cls._of_record(run, record, genome, stored)
+        row = np.array([run.lives.row(organism, world)])
+        return cls._of_record(run, run.lives.take(row), pedigree.genomes(run, row)[0], stored)
 
     @classmethod
     def _of_record(
@@ -104,7 +103,7 @@ class RelivedLife:
     ) -> "RelivedLife":
         """Prepare a life from its record, a single row, and its genome, float32 (P,); see `of`."""
         habitat, law, begin = at(run.habitat, int(record.cell[0])), run.law, "the checkpoint"
-        if stored is None and is_older(run, record)[0]:
+        if stored is None and record.inherited[0]:
             stored, begin = run.origin, "the fork"
         if stored is not None and not habitat.exact:
             raise InputError(
@@ -153,7 +152,7 @@ class RelivedLife:
             return self._own(self.stored, "memory")
         if self.first is not None:
             return self.first
-        of = line_of(self.run, self.record) if inherits_memory(self.law) else []
+        of = ancestors(self.run, self.record) if inherits_memory(self.law) else []
         line = [*(self._of_record(self.run, *each) for each in of), self]
         memory, a_child = jnp.zeros((1, self.law.memory), jnp.float32), np.zeros(1, bool)
         for parent, child in steps(list(pairwise(line)), "living ancestors again"):
