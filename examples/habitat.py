@@ -73,15 +73,7 @@ class Pasture(JaxHabitat, Settings):
             (body.tuft, 18 * self.reach / 0.1, "#5a9e4b"),
             (body.place, 7, "#7a4b2a"),
         ):
-            pen.ellipse(
-                [
-                    180 * (1 + x) - size,
-                    180 * (1 - y) - size,
-                    180 * (1 + x) + size,
-                    180 * (1 - y) + size,
-                ],
-                colour,
-            )
+            pen.circle((180 * (1 + x), 180 * (1 - y)), size, colour)
         return picture
 
 

@@ -162,16 +162,15 @@ def test_each_game_begins_with_the_store_of_its_player(players: Players) -> None
     count = len(players.genomes)
     store = np.arange(1, count + 1, dtype=np.float32)
     rates, cells = players.rates._replace(store=store), np.arange(count, dtype=np.int32)
-    start = begun(players.law, 2, Seats(players.genomes, players.keys, cells, rates))
-    assert np.asarray(start.vitals.energy).tolist() == (store * ONE).tolist()
-    assert not np.asarray(start.vitals.eaten).any()
-    assert (start.memory.shape, np.asarray(start.memory).any()) == (
-        (count, players.law.memory),
-        False,
-    )
-    assert np.asarray(start.mind.cell).tolist() == cells.tolist()
+    seats = Seats(players.genomes, players.keys, cells, rates)
+    mind, memory, vitals, drawn = begun(players.law, 2, seats)
+    assert np.asarray(vitals.energy).tolist() == (store * ONE).tolist()
+    assert not np.asarray(vitals.eaten).any()
+    assert memory.shape == (count, players.law.memory)
+    assert not np.asarray(memory).any()
+    assert np.asarray(mind.cell).tolist() == cells.tolist()
     words = body_words(stream(players.keys, Purpose.BODY, wide([0])), cells, 2)
-    np.testing.assert_array_equal(start.words, words)
+    np.testing.assert_array_equal(drawn, words)
 
 
 @pytest.mark.parametrize("where", ["in JAX", "on the host"])

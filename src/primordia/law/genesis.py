@@ -15,7 +15,7 @@ from primordia.law.law import Law
 from primordia.law.seasons import ratchets
 from primordia.law.world import Cause, Looks, Organisms, World, Worlds
 from primordia.random.keys import Purpose, bits, stream
-from primordia.random.wide import Wide, wide
+from primordia.random.wide import Wide, never, wide, zero
 
 
 def begin(law: Law, seeds: np.ndarray) -> World:
@@ -32,21 +32,21 @@ def empty_worlds(law: Law, seed: Wide, library: Any = np) -> World:
     count, cells, mutation = len(seed.lo), law.worlds * law.cells, law.heredity.mutation
     worlds = Worlds(
         seed=seed,
-        tick=_zero(library, (count,)),
-        births=_zero(library, (count,)),
-        deaths=_zero(library, (count, len(Cause))),
-        extinctions=_zero(library, (count,)),
-        organism_ticks=_zero(library, (count,)),
-        food=_zero(library, (count,)),
+        tick=zero((count,), library),
+        births=zero((count,), library),
+        deaths=zero((count, len(Cause)), library),
+        extinctions=zero((count,), library),
+        organism_ticks=zero((count,), library),
+        food=zero((count,), library),
         calm=library.zeros(count, np.int32),
         sample_wait=library.full(count, law.sample_every, np.int32),
-        saturated=_never(library, (count,)),
-        saturated_births=_never(library, (count,)),
-        fixed=_never(library, (count,)),
-        fixed_births=_never(library, (count,)),
+        saturated=never((count,), library),
+        saturated_births=never((count,), library),
+        fixed=never((count,), library),
+        fixed_births=never((count,), library),
         climate=initial_climate(law, count, library),
         looks=initial_looks(law, count, 0, library),
-        acts=None if law.act is None else Acts(*(_zero(library, (count,)) for _ in Acts._fields)),
+        acts=None if law.act is None else Acts(*(zero((count,), library) for _ in Acts._fields)),
     )
     genome = {
         name: library.zeros((cells, *shape), np.float32)
@@ -62,9 +62,9 @@ def empty_worlds(law: Law, seed: Wide, library: Any = np) -> World:
         memory=library.zeros((cells, law.memory), np.float32),
         energy=library.zeros(cells, np.int32),
         eaten=library.zeros(cells, np.int32),
-        born=_zero(library, (cells,)),
-        number=_zero(library, (cells,)),
-        branch=_zero(library, (cells,)),
+        born=zero((cells,), library),
+        number=zero((cells,), library),
+        branch=zero((cells,), library),
         moments=moments.none(cells, mutation.moments, law.senses, law.memory, library),
     )
     return World(organisms, worlds)
@@ -114,14 +114,4 @@ def initial_looks(law: Law, count: int, tick: int, library: Any = np) -> Looks:
     periods = [ratchet.every for ratchet in ratchets(law.seasons)]
     wait = np.array([period - tick % period for period in periods], np.int32)
     shape = count, len(periods)
-    return Looks(library.tile(wait, (count, 1)), _zero(library, shape), _zero(library, shape))
-
-
-def _zero(library: Any, shape: tuple[int, ...]) -> Wide:
-    words = library.zeros(shape, np.uint32)
-    return Wide(words, words)
-
-
-def _never(library: Any, shape: tuple[int, ...]) -> Wide:
-    words = library.full(shape, np.uint32(2**32 - 1), np.uint32)
-    return Wide(words, words)
+    return Looks(library.tile(wait, (count, 1)), zero(shape, library), zero(shape, library))

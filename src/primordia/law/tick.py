@@ -10,6 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from primordia.habitats.bodies import select_bodies
 from primordia.habitats.contract import Bodies, Outcome
 from primordia.law import life
 from primordia.law.law import Law
@@ -120,12 +121,6 @@ def _drawn(law: Law, key: Wide, probability: Array) -> Array:
 
 def rest(before: Organisms, after: Organisms, active: Array) -> Organisms:
     """Return organisms after some ticks. Organisms that are not `active`, bool (C,), are unchanged."""
-
-    def keep(new: Array, old: Array) -> Array:
-        return jnp.where(active.reshape(-1, *[1] * (new.ndim - 1)), new, old)
-
-    return before._replace(
-        memory=keep(after.memory, before.memory),
-        energy=keep(after.energy, before.energy),
-        eaten=keep(after.eaten, before.eaten),
-    )
+    lived = ("memory", "energy", "eaten")
+    old, new = ({name: getattr(each, name) for name in lived} for each in (before, after))
+    return before._replace(**select_bodies(active, new, old))

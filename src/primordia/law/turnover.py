@@ -12,6 +12,7 @@ import numpy as np
 from jax import Array
 
 from primordia.brains.contract import Genome
+from primordia.habitats.bodies import select_bodies
 from primordia.law import events as log
 from primordia.law.events import Events, Rows
 from primordia.law.heredity import Birth, Newborn
@@ -199,7 +200,8 @@ def _inherit(
         own = _Inherited(
             law.heredity.layout.split(newborn.genome),
             newborn.notes,
-            _of_children(moments, birth.founder),
+            # What stands for a founder's parent may be in another world.
+            select_bodies(birth.founder, jax.tree.map(jnp.zeros_like, moments), moments),
         )
         where = jnp.where(valid, cells, len(births.newborn))
         now = jax.tree.map(lambda all_, new: all_.at[where].set(new, mode="drop"), now, own)
@@ -208,21 +210,6 @@ def _inherit(
 
     inherited, listed = log.for_each(births.newborn, (before, listed), one_batch)
     return organisms._replace(**inherited._asdict()), listed
-
-
-def _of_children(moments: Remembered | None, founder: Array) -> Remembered | None:
-    """Return the first moments of newborn (K,): their parents' moments, or none for founders.
-
-    Of a founder's moments all numbers are 0, since the cell that stands for its parent may be in another
-    world.
-    """
-    if moments is None:
-        return None
-
-    def first(leaf: Array) -> Array:
-        return jnp.where(founder.reshape(-1, *[1] * (leaf.ndim - 1)), jnp.zeros_like(leaf), leaf)
-
-    return jax.tree.map(first, moments)
 
 
 def _birth(law: Law, worlds: Worlds, births: Births, keys: Streams, cells: Array) -> Birth:

@@ -114,14 +114,14 @@ def signed(value: Array) -> Wide:
     return Wide((value >> 31).astype(jnp.uint32), value.astype(jnp.uint32))
 
 
-def zero(shape: tuple[int, ...]) -> Wide:
-    """Return counts of zero."""
-    return Wide(jnp.zeros(shape, jnp.uint32), jnp.zeros(shape, jnp.uint32))
+def zero(shape: tuple[int, ...], library: Any = jnp) -> Wide:
+    """Return counts of zero; `library` makes the arrays, JAX's or NumPy."""
+    return Wide(*(library.zeros(shape, np.uint32) for _ in range(2)))
 
 
-def never(shape: tuple[int, ...]) -> Wide:
+def never(shape: tuple[int, ...], library: Any = jnp) -> Wide:
     """Return 2^64 - 1: a tick that never comes, or a number that stands for no organism."""
-    return Wide(*(jnp.full(shape, np.uint32(2**32 - 1)) for _ in range(2)))
+    return Wide(*(library.full(shape, np.uint32(2**32 - 1), np.uint32) for _ in range(2)))
 
 
 def happened(value: Wide) -> Array:

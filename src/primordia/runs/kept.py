@@ -6,10 +6,9 @@ moved, sent and lived again without the original files.
 """
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from os.path import isfile  # False, and no error, for a name that is too long
 from pathlib import Path
-from typing import NamedTuple
 
 from primordia import files
 from primordia.config import Config
@@ -23,17 +22,12 @@ from primordia.settings.tables import files_in
 FOLDER = "files"
 
 
-class Kept(NamedTuple):
-    """The files of a run; the fields are those of the run's description."""
-
-    files_from: str
-    """the folder in which they were found; all paths begin there"""
-    files: dict[str, str]
-    """SHA-256 of each, by its path below that folder and below the run's"""
-
-
-def copy(config: Config, habitat: AnyHabitat, run: Path) -> Kept:
+def copy(config: Config, habitat: AnyHabitat, run: Path) -> tuple[str, dict[str, str]]:
     """Copy the files that settings name into a new run, with the files that they need.
+
+    Returns:
+        the folder in which they were found, where all paths begin; the SHA-256 of each, by its path
+        below that folder and below the run's.
 
     Raises:
         InputError: a file has a name that some systems do not allow, or names another file by its
@@ -43,7 +37,7 @@ def copy(config: Config, habitat: AnyHabitat, run: Path) -> Kept:
     named = [each for each in files_in(config.habitat) if os.path.isabs(each) and isfile(each)]
     paths = [Path(path) for path in _needed(config, {each: each for each in named})]
     if not paths:
-        return Kept("", {})
+        return "", {}
     found_in = Path(os.path.commonpath([path.parent for path in paths]))
     names = sorted({path.relative_to(found_in).as_posix() for path in paths})
     for name in names:
@@ -54,13 +48,13 @@ def copy(config: Config, habitat: AnyHabitat, run: Path) -> Kept:
             files.write_bytes(run / FOLDER / name, (found_in / name).read_bytes())
         except OSError as error:
             raise Trouble(f"{found_in / name} cannot be read: {error.strerror}") from None
-    kept = Kept(str(found_in), {name: files.sha256(run / FOLDER / name) for name in names})
-    if not _is_whole(config.keeping(_places(run, kept)), habitat, {*_places(run, kept).values()}):
+    places = _places(run, str(found_in), names)
+    if not _is_whole(config.keeping(places), habitat, {*places.values()}):
         raise InputError(
             f"{named[0]} needs a file that is named by its full path, so a run cannot hold both;"
             " give the path from the folder of the file that names it"
         )
-    return kept
+    return str(found_in), {name: files.sha256(run / FOLDER / name) for name in names}
 
 
 def _is_whole(config: Config, habitat: AnyHabitat, copies: set[str]) -> bool:
@@ -79,7 +73,7 @@ def keeping(config: Config, run: Path, about: Description, edited: bool) -> Conf
 
     With `edited`, copies are used only for originals that are missing.
     """
-    places = _places(run, about)
+    places = _places(run, about.files_from, about.files)
     return config.keeping(
         {original: path for original, path in places.items() if not (edited and isfile(original))}
     )
@@ -113,10 +107,10 @@ def changes(about: Description) -> list[str]:
     ]
 
 
-def _places(run: Path, kept: Kept | Description) -> dict[str, str]:
+def _places(run: Path, found_in: str, names: Iterable[str]) -> dict[str, str]:
     """Return the path of the copy of each original."""
     folder = (run / FOLDER).absolute()
-    return {str(Path(kept.files_from, name)): str(folder / name) for name in kept.files}
+    return {str(Path(found_in, name)): str(folder / name) for name in names}
 
 
 def _needed(config: Config, places: Mapping[str, str]) -> set[str]:

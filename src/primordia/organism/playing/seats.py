@@ -86,16 +86,6 @@ class Seats(NamedTuple):
     """metabolism, each float32 (N,)"""
 
 
-class Begun(NamedTuple):
-    """Games at their start."""
-
-    mind: Mind
-    memory: Array
-    vitals: Vitals
-    words: Array
-    """random words of bodies, uint32 (N, words)"""
-
-
 def mark(senses: Any) -> Any:
     """Return a hash of senses float32 (N, S), on the host or in JAX: uint32 (N, 2)."""
     places = np.arange(1, senses.shape[1] + 1, dtype=np.uint32)
@@ -103,11 +93,15 @@ def mark(senses: Any) -> Any:
     return (senses.view(np.uint32)[:, :, None] * factors).sum(axis=1, dtype=np.uint32)
 
 
-def begun(law: Law, words: int, seated: Seats) -> Begun:
-    """Return games at their start; `words` is the number of random words of each body."""
+def begun(law: Law, words: int, seated: Seats) -> tuple[Mind, Array, Vitals, Array]:
+    """Return games at their start; `words` is the number of random words of each body.
+
+    Returns:
+        mind; memory, float32 (N, M); vitals; random words of bodies, uint32 (N, words).
+    """
     cells, store = jnp.asarray(seated.cells), to_fixed_point(seated.rates.store)
     mind = Mind(law.heredity.layout.split(jnp.asarray(seated.genomes)), seated.keys, cells)
     key = stream(seated.keys, Purpose.BODY, wide([0]))
     drawn = words_of(law, mind.genome, key, cells, words)
     memory = jnp.zeros((len(store), law.memory), jnp.float32)
-    return Begun(mind, memory, Vitals(store, jnp.zeros_like(store)), drawn)
+    return mind, memory, Vitals(store, jnp.zeros_like(store)), drawn
