@@ -31,7 +31,8 @@ class LifeInJax:
 
     def restore(self, stored: dict[str, np.ndarray]) -> Bodies:
         """Return the body, (1, ...) each, from a checkpoint's arrays whose names begin with `bodies`."""
-        like = self._habitat.reset(jnp.zeros((1, self._habitat.words), jnp.uint32))
+        words = jax.ShapeDtypeStruct((1, self._habitat.words), np.uint32)
+        like = jax.eval_shape(self._habitat.reset, words)  # computes and compiles nothing
         leaves = [jnp.asarray(stored[name]) for name, _ in named_leaves({"bodies": like})]
         return jax.tree.unflatten(jax.tree.structure(like), leaves)
 
