@@ -206,7 +206,7 @@ def tasks() -> Iterator[tuple[str, Case]]:
     random, frames = {"sticky": 0.25, "noops": 30}, {"frame_skip": 1}
     yield "CartPole-survival", poles(evaluate={"games": 5, "ticks": 300})
     few = {"cells": 8, "hazard": 0.005, "seed": 5, "stop": ticks(3100)}
-    yield "few-poles", Case("CartPole-survival", few)
+    yield "few-poles", Case("CartPole-survival", few, evaluate={"games": 5, "ticks": 300})
     yield "resumed", poles(stop=ticks(170), then=({"ticks": 290}, {"ticks": 400}))
     change = {"seed": 8, "mutation": {"scale": 0.1, "probability": 0.7}, "hazard": 0.01,
               "stop": ticks(500)}  # fmt: skip

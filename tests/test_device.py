@@ -40,7 +40,8 @@ LIVE = (
     SETTINGS
     + """
 import primordia
-primordia.load(sys.argv[1]).organism(3).genome()
+from primordia.assays.subjects import of_run
+of_run(primordia.load(sys.argv[1]).opened(), [(3, 0)])
 assert settings() == before
 assert {**os.environ, "XLA_FLAGS": ""} == {**variables, "XLA_FLAGS": ""}
 law = {"cells": 8, "hazard": 0.002}

@@ -12,8 +12,9 @@ import pytest
 
 from primordia.engine import calls
 from primordia.engine.calls import Unsettled, _Steps
-from primordia.engine.held import Bulk
+from primordia.engine.held import Bulk, Form
 from primordia.law import events
+from tests.worlds import HERD, begun, law_of
 
 CELLS = 2
 """Cells of each world."""
@@ -82,6 +83,8 @@ def test_a_run_goes_on_while_a_world_runs_and_the_lists_have_room(
         world_with(cells(*alive)), "events", cells(1), cells(*newborn), ran, "limits"
     )
     assert np.flatnonzero(made.alive).tolist() == alive
+    assert np.flatnonzero(made.died).tolist() == [1]
+    assert np.flatnonzero(made.newborn).tolist() == list(newborn)
     active = [cell for cell in alive if cell // CELLS in live]
     assert np.flatnonzero(made.active).tolist() == active
     assert bool(made.go_on) == (len(live) > 0 and room)
@@ -140,3 +143,11 @@ def test_organisms_remember_their_senses_in_the_worlds_that_ran(
     monkeypatch.setattr(Bulk, "of", lambda world: world)
     made = _Steps(law, form).remember(bulk, held, senses, ran)
     assert made == ("law", "held with bulk", "senses", "ran")
+
+
+def test_habitats_whose_bodies_need_other_words_share_all_other_calls() -> None:
+    law = law_of(HERD).compiled
+    form = Form.of(begun(law, np.arange(3, dtype=np.uint64)))
+    one, other = calls.Calls(law, form, 2), calls.Calls(law, form, 30)
+    differ = {name for name in vars(one) if getattr(one, name) is not getattr(other, name)}
+    assert differ == {"words"}

@@ -57,6 +57,7 @@ class Scripted:
         )
 
     def words(self, genome: Any, held: Any) -> np.ndarray:
+        self.log.append(("words",))
         return np.arange(8).reshape(4, 2)
 
     def settle(self, bulk: Any, events: Any, held: Any, unsettled: Any, limits: Any) -> tuple:
@@ -107,7 +108,7 @@ def test_deaths_are_noted_before_a_reset_and_samples_after_it() -> None:
     noted = [("deaths", [1, 2])] * 2  # of tallies and of messages
     assert scripted.log == [
         ("begin",), ("begin",), ("think", [0, 2, 4, 6]),
-        ("live", [1, 2], 4), ("settle", 3), *noted, ("reset", [0, 2], [[0, 1], [4, 5]]),
+        ("live", [1, 2], 4), ("settle", 3), *noted, ("words",), ("reset", [0, 2], [[0, 1], [4, 5]]),
         ("think", [70, 90, 70, 6]), ("samples", [0, 2, 3]),
         ("live", [0, 2], 7), ("settle", 7), ("deaths", []), ("deaths", []),
         ("remember", [90, 90, 90, 6]), ("samples", [1, 2, 3]),

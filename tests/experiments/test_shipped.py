@@ -19,14 +19,14 @@ from primordia.experiments.campaign import begin
 from primordia.experiments.file import read
 from primordia.experiments.job import live
 from primordia.habitats.gymnax import task as by_name
-from primordia.habitats.gymnax.check import Measured
+from primordia.habitats.gymnax.check import Measured, measure
 from primordia.habitats.gymnax.habitat import Gymnax
 from primordia.settings.tables import merged
 
 EXPERIMENTS = Path(__file__).parent.parent.parent / "experiments"
 FILES = sorted(EXPERIMENTS.glob("*/*.toml"))
 FEWER = {"atari": 10}
-"""Number of worlds of an experiment in which each world takes ten minutes of a core."""
+"""Least number of worlds of an experiment in which each world takes ten minutes of a core."""
 TRIALS = sorted(EXPERIMENTS.glob("*/founders/*.toml"))
 
 
@@ -48,8 +48,8 @@ def rows_of(file: Path) -> list[dict[str, str]]:
     return list(csv.DictReader(file.read_text().splitlines()))
 
 
-@pytest.fixture(scope="module")
-def _unplayed() -> Iterator[None]:
+@pytest.fixture
+def _unplayed(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Skip what compiles code, which takes most of the time: other tests play each task.
 
     It is the check of a habitat's arrays, and the lives that measure an environment of gymnax.
@@ -58,12 +58,11 @@ def _unplayed() -> Iterator[None]:
     def unmeasured(habitat: Gymnax) -> Measured:
         return Measured(9.0, 1, np.zeros(len(habitat.senses.unbounded()), np.float32), [])
 
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(fitting, "check_arrays", lambda habitat: None)
-        patch.setattr(by_name, "measure", unmeasured)
-        by_name.task.cache_clear()
-        yield
-        by_name.task.cache_clear()
+    monkeypatch.setattr(fitting, "check_arrays", lambda habitat: None)
+    monkeypatch.setattr(by_name, "measure", unmeasured)
+    by_name.task.cache_clear()
+    yield
+    by_name.task.cache_clear()
 
 
 @pytest.mark.usefixtures("_unplayed")
@@ -81,6 +80,11 @@ def test_settings_of_every_arm_are_valid_and_limits_are_shared(file: Path) -> No
     assert min(config.seed for config in configs) >= 1000, "smaller seeds are for choosing settings"
     assert configs[0].stop.ticks is not None
     assert len({file.stem for file in FILES}) == len(FILES), "each has a folder of its name"
+
+
+@pytest.mark.slow
+def test_an_environment_of_an_experiment_has_no_faults() -> None:
+    assert not measure(Gymnax(env="experiments.learning.upright:Acrobot")).faults
 
 
 @pytest.mark.usefixtures("_unplayed")

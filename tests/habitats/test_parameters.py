@@ -279,6 +279,7 @@ def test_a_habitat_that_names_parameters_must_scale_them(kind: type[Any], says: 
     with pytest.raises(InputError) as error:
         load("CartPole-survival", {"habitat": own})
     assert says in str(error.value)
+    assert "habitat.change" not in str(error.value), "the fault is the habitat's"
 
 
 class Swayed(HostCartPole):
@@ -327,5 +328,7 @@ def test_a_wrong_parameter_is_named(settings: dict[str, Any], says: str) -> None
 
 
 def test_a_habitat_without_parameters_refuses() -> None:
-    with pytest.raises(InputError, match=r"change\.0: of: .* 'gravity'; this habitat has none"):
+    with pytest.raises(
+        InputError, match=r"change\.0: of: .* 'gravity'; this habitat has none, so leave it out"
+    ):
         load("CartPole-survival", {"habitat": {"name": "tests.toys:Mill", "change": [GRAVITY]}})

@@ -12,29 +12,26 @@ from primordia.organism.reliving.relived import RelivedLife
 
 
 @pytest.mark.parametrize(
-    ("born", "given", "begin"),
-    [
-        (41, None, None), (40, None, "origin"), (39, None, "origin"),
-        (41, "kept", "kept"), (39, "kept", "kept"),
-    ],
+    ("inherited", "given", "begin"),
+    [(False, None, None), (True, None, "origin"), (False, "kept", "kept"), (True, "kept", "kept")],
 )  # fmt: skip
 @pytest.mark.parametrize("exact", [True, False])
 def test_an_organism_older_than_a_fork_begins_with_the_state_of_the_fork(
-    born: int, given: Any, begin: str | None, exact: bool, monkeypatch: pytest.MonkeyPatch
+    inherited: bool, given: Any, begin: str | None, exact: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The fork is at tick 40. A life begins with a state only if the habitat can save bodies."""
+    """A life begins with a state only if the habitat can save bodies."""
     monkeypatch.setattr(pedigree, "genomes", lambda run, rows: np.float32([[*rows, 2]]))
     lives = SimpleNamespace(
         row=lambda organism, world: {(5, 1): 7}[organism, world],
         take=lambda rows: SimpleNamespace(
-            inherited=np.array([born <= 40]), id=np.array([5]), cell=np.array([3])
+            inherited=np.array([inherited]), id=np.array([5]), cell=np.array([3])
         ),
     )
     layout = SimpleNamespace(split=lambda genome: {"all": genome})
     run: Any = SimpleNamespace(
         path="RUN",
         lives=lives,
-        config=SimpleNamespace(seeds=2),
+        config=None,
         law=SimpleNamespace(heredity=SimpleNamespace(layout=layout)),
         habitat=SimpleNamespace(exact=exact),
         origin="origin",

@@ -69,6 +69,17 @@ def test_outcomes_and_effects_are_those_of_each_arm(compared: Comparison) -> Non
     ]
 
 
+def test_a_page_has_the_tables_of_a_comparison(
+    compared: Comparison, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(arms, "compare", lambda runs: compared)
+    monkeypatch.setattr(arms, "_over_time", lambda runs, colours: [])
+    runs: Any = [None] * 3
+    head, rows = effects(compared)
+    of_effects = {"title": "Effects", "head": head, "rows": rows}
+    assert arms.arms(runs)["tables"] == [_outcomes(compared), of_effects]
+
+
 def test_survival_of_each_arm_has_its_name_and_colour(compared: Comparison) -> None:
     panel = _survival(compared, COLOURS)
     assert (panel["x"], panel["y"]) == ("age (ticks)", "fraction alive")

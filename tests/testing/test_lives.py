@@ -233,6 +233,8 @@ def test_actions_are_of_their_kind_and_use_all_its_values() -> None:
     chosen = random_actions(Discrete(3), TICKS, ALL)
     assert (chosen.shape, chosen.dtype) == ((TICKS, ALL), np.int32)
     assert set(chosen.flat) == {0, 1, 2}
+    many = random_actions(Discrete(3), 500, 32)
+    np.testing.assert_allclose(np.bincount(many.ravel()) / many.size, [1 / 3] * 3, atol=0.02)
     moved = random_actions(Continuous(2), TICKS, ALL)
     assert (moved.shape, moved.dtype) == ((TICKS, ALL, 2), np.float32)
     assert abs(moved.mean()) < 0.2

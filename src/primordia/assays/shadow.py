@@ -155,7 +155,8 @@ def _lifespans(run: Records, rows: np.ndarray, redrawn: bool, cut: int) -> np.nd
 
 def reborn(run: Records, rows: np.ndarray, redrawn: bool) -> Players:
     """Return organisms, or their shadows if `redrawn`, as players, each with its own fresh key."""
+    genomes = pedigree.genomes(run, rows, redrawn)  # first, since it prepares JAX
     lives = run.lives.take(rows)
     climate = PastClimate(run).of_lives(lives, lives.born)
     keys = stream(wide(run.world_seeds[lives.world]), Purpose.REBIRTH, wide(lives.id))
-    return as_players(run, pedigree.genomes(run, rows, redrawn), keys, climate, lives.cell)
+    return as_players(run, genomes, keys, climate, lives.cell)

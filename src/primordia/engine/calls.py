@@ -1,4 +1,4 @@
-"""The compiled calls for a habitat on the host: think, judge, and settle."""
+"""The compiled calls for a habitat on the host: think, judge, settle, and draw the words of bodies."""
 
 from dataclasses import dataclass
 from typing import Any, NamedTuple

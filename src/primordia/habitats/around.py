@@ -1,4 +1,7 @@
-"""Habitats around another habitat: everything is passed on, except what a subclass changes."""
+"""Habitats made of others, and habitats around another one.
+
+Those around another habitat pass everything on, except what a subclass changes.
+"""
 
 from collections.abc import Callable
 from functools import wraps

@@ -1,4 +1,4 @@
-"""Bodies in JAX: inserted into cells, selected, and checked for finite coordinates; trials of them."""
+"""Bodies in JAX, inserted into cells, selected and checked for finite coordinates; actions for trials."""
 
 from functools import partial
 

@@ -272,6 +272,7 @@ def changes_of(tables: Any, habitat: AnyHabitat) -> tuple[Kind, ...]:
         changes = _LIST.validate_python(tuple(tables))
     except ValidationError as error:
         raise InputError(first_fault(error, Change, "habitat.change")) from None
+    check_parameters(habitat)
     for number, change in enumerate(changes):
         try:
             change.check(habitat)

@@ -77,7 +77,7 @@ def _check_options(tracing: Tracing, habitat: AnyHabitat) -> None:
 
 
 def check_parameters(habitat: AnyHabitat, where: str = "", names: Iterable[str] = ()) -> None:
-    """Check the physical parameters that a habitat offers, and whether some of them are among these.
+    """Check the physical parameters that a habitat offers, and that it offers those in `names`.
 
     Args:
         habitat: the habitat.
@@ -101,7 +101,11 @@ def check_parameters(habitat: AnyHabitat, where: str = "", names: Iterable[str] 
     for name in names:
         if name not in parameters:
             near = did_you_mean(name, [*parameters])
-            has = f"known: {', '.join(parameters)}" if parameters else "this habitat has none"
+            has = (
+                f"known: {', '.join(parameters)}"
+                if parameters
+                else "this habitat has none, so leave it out"
+            )
             raise InputError(f"{where}: there is no physical parameter {name!r}{near}; {has}")
 
 

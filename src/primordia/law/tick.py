@@ -121,6 +121,6 @@ def _drawn(law: Law, key: Wide, probability: Array) -> Array:
 
 def rest(before: Organisms, after: Organisms, active: Array) -> Organisms:
     """Return organisms after some ticks. Organisms that are not `active`, bool (C,), are unchanged."""
-    lived = ("memory", "energy", "eaten")
-    old, new = ({name: getattr(each, name) for name in lived} for each in (before, after))
-    return before._replace(**select_bodies(active, new, old))
+    old, new = ((each.memory, each.energy, each.eaten) for each in (before, after))
+    memory, energy, eaten = select_bodies(active, new, old)
+    return before._replace(memory=memory, energy=energy, eaten=eaten)

@@ -200,7 +200,7 @@ def _inherit(
         own = _Inherited(
             law.heredity.layout.split(newborn.genome),
             newborn.notes,
-            # What stands for a founder's parent may be in another world.
+            # A founder's parent is any cell, perhaps of another world, so its moments are zeros.
             select_bodies(birth.founder, jax.tree.map(jnp.zeros_like, moments), moments),
         )
         where = jnp.where(valid, cells, len(births.newborn))

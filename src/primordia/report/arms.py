@@ -31,14 +31,12 @@ def arms(runs: Sequence[Records]) -> dict[str, Any]:
     if len(runs) < 2:
         return {"tables": [], "notes": [], "panels": _over_time(runs, colours)}
     compared = compare(runs)
+    head, rows = effects(compared)
     return {
-        "tables": [
-            _outcomes(compared),
-            dict(zip(("title", "head", "rows"), ("Effects", *effects(compared)), strict=True)),
-        ],
+        "tables": [_outcomes(compared), {"title": "Effects", "head": head, "rows": rows}],
         "notes": [
             "Medians over worlds, with quartiles; a world that stopped unsaturated is treated as"
-            " censored. Effects: Cliff's delta, and the ratio of medians.",
+            " censored. Effects: Cliff's delta, over all worlds and within seeds; the ratio of medians.",
             *evidence_notes(compared),
         ],
         "panels": [_survival(compared, colours), *_over_time(runs, colours)],

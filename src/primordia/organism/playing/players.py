@@ -18,10 +18,10 @@ from primordia.runs.records import Records
 
 def players_of(run: Records, rows: np.ndarray) -> Players:
     """Return organisms, by their rows in the run's lives, int (K,), as players."""
-    lives = run.lives.take(rows)
+    genomes, lives = pedigree.genomes(run, rows), run.lives.take(rows)  # first: it prepares JAX
     climate = PastClimate(run).of_lives(lives, run.ends[lives.world])
     keys = evaluation_keys(run, lives.world, lives.id)
-    return as_players(run, pedigree.genomes(run, rows), keys, climate, lives.cell)
+    return as_players(run, genomes, keys, climate, lives.cell)
 
 
 def founders_of(
