@@ -128,7 +128,8 @@ MISSING = "not measured"
 
 def games(name: str, who: str, way: str, outcome: str = "lifespan") -> pd.Series:
     """Return each world's median organism's median game; empty if they did not play."""
-    found = rows(f"{name}-games").query("who == @who and way == @way")
+    found = rows(f"{name}-games")
+    found = found[(found["who"] == who) & (found["way"] == way)]
     return found.groupby("seed" if "seed" in found else "world")[outcome].median()
 
 
@@ -225,7 +226,8 @@ def searched(name: str, method: str, way: str, outcome: str = "score") -> str:
     """Return the median over seeds of what a search with a reward has found (`baselines.py`)."""
     if not _path(f"{name}-baselines", "csv").exists():
         return MISSING
-    found = rows(f"{name}-baselines").query("who == @method and way == @way")[outcome]
+    every = rows(f"{name}-baselines")
+    found = every[(every["who"] == method) & (every["way"] == way)][outcome]
     return Cell(spread_text(found)).median
 
 

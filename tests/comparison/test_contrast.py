@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy import stats
 
 from primordia.comparison import needed, resample
 from primordia.comparison.contrast import contrast
@@ -72,7 +72,7 @@ def test_resamples_are_even_and_independent() -> None:
     (again,), (other,) = resamples(20), resamples(20, stream=1)
     assert drawn.shape == (1000, 20)
     counts = np.bincount(drawn.ravel(), minlength=20)
-    assert stats.chisquare(counts).pvalue > 0.001
+    assert scipy.stats.chisquare(counts).pvalue > 0.001
     assert (drawn == again).all()
     assert (drawn == other).mean() == pytest.approx(0.05, abs=0.01)
 

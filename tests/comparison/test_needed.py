@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
+import scipy
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy import stats
 
 from primordia.comparison import needed
 from primordia.comparison.contrast import contrast
@@ -36,7 +36,7 @@ def test_pairs_that_contradict_each_other_need_more_worlds(
 
 def test_the_numbers_are_those_of_noether() -> None:
     """Per run (z + z)^2 / (6 (p - 1/2)^2); pairs (z + z)^2 / (4 (p - 1/2)^2), of those without ties."""
-    sum_of_z = stats.norm.ppf(0.975) + stats.norm.ppf(0.8)
+    sum_of_z = scipy.stats.norm.ppf(0.975) + scipy.stats.norm.ppf(0.8)
     assert needed.of_each_run(0.4, 0.05) == math.ceil(sum_of_z**2 / (6 * 0.2**2)) == 33
     assert needed.of_pairs(Paired(10, 8, 2), 0.05) == math.ceil(sum_of_z**2 / (4 * 0.3**2)) == 22
     assert needed.of_pairs(Paired(20, 8, 2), 0.05) == math.ceil(2 * sum_of_z**2 / (4 * 0.3**2))

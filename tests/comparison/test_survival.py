@@ -4,9 +4,9 @@ from itertools import chain
 
 import numpy as np
 import pytest
+import scipy
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy import stats
 
 from primordia.comparison.resample import interval, resamples
 from primordia.comparison.survival import survival
@@ -43,8 +43,8 @@ def test_survival_is_the_estimate_of_kaplan_and_meier(
 ) -> None:
     lives = made(worlds)
     estimate = survival(lives, len(worlds), limit)
-    split = stats.CensoredData(lives.lifespan[lives.died], right=lives.lifespan[~lives.died])
-    expected = stats.ecdf(split).sf.evaluate(estimate.ages)
+    split = scipy.stats.CensoredData(lives.lifespan[lives.died], right=lives.lifespan[~lives.died])
+    expected = scipy.stats.ecdf(split).sf.evaluate(estimate.ages)
     np.testing.assert_allclose(estimate.curve, expected, atol=1e-12)
     deaths = {age for lived in worlds for age, died in lived if died and age <= limit}
     np.testing.assert_array_equal(estimate.ages, sorted(deaths))

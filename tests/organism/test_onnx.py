@@ -23,7 +23,7 @@ QUICK = ("plastic",)
 
 @pytest.fixture(autouse=True, scope="module")
 def _examples() -> None:
-    """Load jax2onnx without random numbers. Its examples draw some, which compile for seconds."""
+    """Load jax2onnx without random numbers and equinox. Its examples with both compile for seconds."""
 
     def zeros(
         key: jax.Array, shape: tuple[int, ...] = (), dtype: Any = float, **_: Any
@@ -33,6 +33,7 @@ def _examples() -> None:
     with pytest.MonkeyPatch.context() as patch, jax.default_prng_impl("unsafe_rbg"):
         for kind in ("uniform", "normal"):
             patch.setattr(jax.random, kind, zeros)
+        patch.setitem(sys.modules, "equinox", None)
         import jax2onnx
 
         jax2onnx.to_onnx(lambda senses: senses, [(1,)])
