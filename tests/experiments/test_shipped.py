@@ -83,8 +83,11 @@ def test_settings_of_every_arm_are_valid_and_limits_are_shared(file: Path) -> No
 
 
 @pytest.mark.slow
-def test_an_environment_of_an_experiment_has_no_faults() -> None:
-    assert not measure(Gymnax(env="experiments.learning.upright:Acrobot")).faults
+def test_an_acrobot_that_begins_upright_falls() -> None:
+    """The bounds of its space scale what it perceives; angles and velocities may exceed them."""
+    found = measure(Gymnax(env="experiments.learning.upright:Acrobot"))
+    assert (found.ended, found.faults) == (32, ["an observation is outside the declared space"])
+    assert 5 < found.lifespan < 12
 
 
 @pytest.mark.usefixtures("_unplayed")
