@@ -92,14 +92,13 @@ def test_looking_at_a_run_changes_no_setting_of_the_process(run: Path) -> None:
     python(LOOK, run)
 
 
-@pytest.mark.slow  # `test_a_run_and_a_look_at_it_change_no_setting_of_jax` is the same in this process
 @on_x86
 @pytest.mark.parametrize(
     ("flags", "allowed"),
     [
-        ("--xla_force_host_platform_device_count=1", "AVX2"),
+        pytest.param("--xla_force_host_platform_device_count=1", "AVX2", marks=pytest.mark.slow),
         ("", "AVX2"),
-        (f"{ISA_FLAG}=AVX", "AVX"),
+        pytest.param(f"{ISA_FLAG}=AVX", "AVX", marks=pytest.mark.slow),
     ],
 )
 def test_a_run_is_limited_to_avx2_unless_the_user_chose_otherwise(
