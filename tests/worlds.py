@@ -66,6 +66,7 @@ HERD: dict[str, Any] = {
     "brain": {"hidden": 1},
     "placement": {"topology": "torus8"},
     "cells": 24,
+    "genesis": "fill",
     "seeds": 3,
     "replication": 0.05,
     "hazard": 0.01,
@@ -77,11 +78,10 @@ HERD: dict[str, Any] = {
 CLOCKWORK: dict[str, Any] = {
     **HERD,
     "replication": 0.0,
-    "hazard": 0.0,
-    "genesis": "fill",
+    "hazard": 1e-9,
     "metabolism": {"store": 30.5},
 }
-"""The same worlds, but no random draw matters: all cells are filled, all starve in tick 31, and so on."""
+"""The same compiled code, but no random draw matters: all starve in tick 31, and so on."""
 
 RING: dict[str, Any] = {
     **MEADOW,

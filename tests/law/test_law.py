@@ -111,7 +111,7 @@ def test_genesis_can_fill_every_cell() -> None:
 @pytest.mark.parametrize(
     ("change", "same"),
     [
-        ({"cells": 30, "seeds": 1, "replication": 0.2, "hazard": 0.0, "genesis": "fill"}, True),
+        ({"cells": 30, "seeds": 1, "replication": 0.2, "hazard": 0.0, "genesis": "one"}, True),
         ({"placement": {"topology": "ring"}, "sample_every": 7, "saturation_ticks": 9}, True),
         ({"mutation": {"kind": "heritable"}, "recombination": {"probability": 0.5}}, True),
         ({"metabolism": {"store": 30.0, "gain": 2.0}}, True),

@@ -50,7 +50,7 @@ def test_the_story_of_a_saturated_world() -> None:
     assert happened == (
         "In 7,200 ticks (2 min 24 s of simulated time), 1,500 organisms were born, and 1,490 died:"
         " 1,200 killed by their world, 200 of hunger, 90 by accident. The world died out 2 times,"
-        " and life began again with a random founder. Since tick 2,700 (birth 1,017) all living"
+        " and life began again with founders in all cells. Since tick 2,700 (birth 1,017) all living"
         " organisms descend from one ancestor. At tick 6,543 the world was saturated: all 24 cells"
         " were full, and no organism had died for 2,000 ticks."
     )
@@ -113,8 +113,8 @@ def test_each_cause_of_death_has_its_own_words() -> None:
 
 def test_a_world_that_died_out_began_again_with_the_founders_of_its_settings() -> None:
     begin = "The world died out once, and life began again with "
-    assert f"{begin}a random founder." in sentences(world(extinctions=1))[1]
-    assert f"{begin}founders in all cells." in sentences(world(extinctions=1), genesis="fill")[1]
+    assert f"{begin}founders in all cells." in sentences(world(extinctions=1))[1]
+    assert f"{begin}a random founder." in sentences(world(extinctions=1), genesis="one")[1]
     given = config(TORUS, seeds=1).model_copy(update={"ancestors": ("a.npz",)})
     run: Any = SimpleNamespace(
         config=given, lives=world_of([(0, 5, False)]), description=SimpleNamespace(rate=None)
