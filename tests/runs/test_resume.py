@@ -15,8 +15,8 @@ from primordia.runs.arrays import world_ticks
 from tests.commands import begin, complains, here
 from tests.worlds import MILLS, config
 
-TICKS, FEW = 45_000, 3_000
-"""Ticks of runs that are disturbed while they live, and of others."""
+FEW, ENDLESS = 3_000, 10**9
+"""Ticks of runs."""
 SLOWLY = ("--checkpoint-every", "0.05")
 
 
@@ -29,12 +29,9 @@ def mill(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def through(mill: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[int, list[str]]:
-    """Return the digests of two undisturbed runs by their ticks."""
-    folder = tmp_path_factory.mktemp("through")
-    for ticks in (TICKS, FEW):
-        lived(mill, folder / str(ticks), ticks)
-    return {ticks: digests(folder / str(ticks)) for ticks in (TICKS, FEW)}
+def through(mill: Path, tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+    """Return the digests of an undisturbed run."""
+    return digests(lived(mill, tmp_path_factory.mktemp("through") / "run", FEW))
 
 
 def lived(mill: Path, run: Path, ticks: int, *words: object) -> Path:
@@ -49,7 +46,7 @@ def digests(run: Path) -> list[str]:
 
 
 def test_ticks_added_later_equal_ticks_lived_at_once(
-    mill: Path, through: dict[int, list[str]], tmp_path: Path
+    mill: Path, through: list[str], tmp_path: Path
 ) -> None:
     """What was lived before is not lived again."""
     run, ticks = lived(mill, tmp_path / "run", 1_701), list[int]()
@@ -61,7 +58,7 @@ def test_ticks_added_later_equal_ticks_lived_at_once(
         ticks.clear()
         assert loop.resume(run, {"ticks": then}, listen=listen) == []
         assert before < ticks[0] <= ticks[-1] == then
-    assert digests(run) == through[FEW]
+    assert digests(run) == through
 
 
 def killed(mill: Path, run: Path) -> int:
@@ -70,7 +67,7 @@ def killed(mill: Path, run: Path) -> int:
     While it lives, the run has one writer. It finds compiled code that a run in this process has left,
     so it is not killed while it writes such code.
     """
-    process = begin("run", mill, "--ticks", TICKS, "--out", run, *SLOWLY, "--quiet")
+    process = begin("run", mill, "--ticks", ENDLESS, "--out", run, *SLOWLY, "--quiet")
     deadline = time.monotonic() + 60
     while time.monotonic() < deadline and process.poll() is None:
         known = [path.name for path in run.glob("checkpoints/0*")]
@@ -86,17 +83,15 @@ def killed(mill: Path, run: Path) -> int:
     return process.returncode
 
 
-def test_kill_9_then_resume_equals_never_killed(
-    mill: Path, through: dict[int, list[str]], tmp_path: Path
-) -> None:
+@pytest.mark.usefixtures("through")
+def test_kill_9_then_resume_equals_never_killed(mill: Path, tmp_path: Path) -> None:
     """`test_kills.py` has many more kills."""
     run = tmp_path / "run"
-    status = killed(mill, run)
-    assert status == -signal.SIGKILL, "the run had ended, so nothing was tested"
-    assert info(Archive(run))["worlds"][0]["ticks"] < TICKS
-    done = here("resume", run)
+    assert killed(mill, run) == -signal.SIGKILL
+    until = info(Archive(run))["worlds"][0]["ticks"] + 1_000
+    done = here("resume", run, "--ticks", until)
     assert done.returncode == 0, done.stderr
-    assert digests(run) == through[TICKS]
+    assert digests(run) == digests(lived(mill, tmp_path / "through", until))
 
 
 def test_verify_finds_no_difference_in_a_good_run(mill: Path, tmp_path: Path) -> None:
