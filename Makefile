@@ -7,7 +7,7 @@ CONSTRAINTS ?= --constraint constraints.txt --build-constraint constraints.txt
 # Tests keep the code that they compile, of XLA and of Python, which saves time when they are run again.
 TESTS := PYTHONDONTWRITEBYTECODE= JAX_COMPILATION_CACHE_DIR=$(CURDIR)/$(VENV)/compiled $(BIN)/python -m pytest --numprocesses 2
 
-.PHONY: demo test quick slow newest oldest compiled check docs format figures bench mutants constraints clean
+.PHONY: demo test quick slow newest oldest compiled check docs format figures bench gpu mutants constraints clean
 
 demo: $(VENV)/installed  ## evolve pole balancers, draw and report them, and film the first life beside a long one
 	rm -rf runs/demo
@@ -68,6 +68,9 @@ figures: $(VENV)/installed-dev  ## fill the figures of committed tables into the
 bench: $(VENV)/installed-dev  ## measure every figure; `make bench JSON=file.json` writes them to a file
 	$(BIN)/python benchmarks/bench.py $(if $(JSON),--json $(JSON))
 
+gpu: $(VENV)/installed-gpu  ## on an NVIDIA GPU: try the promises and measure worlds in nine minutes; elsewhere one line says that there is none
+	@$(BIN)/python benchmarks/gpu.py $(if $(JSON),--json $(JSON))
+
 mutants: $(VENV)/installed-mutants  ## plant faults and count those noticed, hours; `make mutants FILES="law/tick.py" SAMPLE=10 SEED=1`
 	$(BIN)/python benchmarks/mutants.py $(FILES) $(if $(SAMPLE),--sample $(SAMPLE)) $(if $(SEED),--seed $(SEED)) $(if $(JSON),--json $(JSON))
 
@@ -99,6 +102,10 @@ $(VENV)/installed-dev: $(VENV)/installed
 $(VENV)/installed-mutants: $(VENV)/installed-dev
 	$(BIN)/python -m pip install --quiet $(CONSTRAINTS) --group mutants
 	@touch $@
+
+$(VENV)/installed-gpu: $(VENV)/installed
+	@if nvidia-smi > /dev/null 2>&1; then \
+	  $(BIN)/python -m pip install --quiet $(CONSTRAINTS) --editable '.[gpu,gymnax,craftax,playground]'; touch $@; fi
 
 $(VENV)/installed-docs: $(VENV)/installed-dev
 	$(BIN)/python -m pip install --quiet $(CONSTRAINTS) --group docs

@@ -53,9 +53,10 @@ def undying() -> dict[str, np.ndarray]:
     return {name: np.asarray(block)[:1] for name, block in genome.items()}
 
 
-def saturated_phase(cells: int, worlds: int, settled: int = 2000) -> Engine:
-    """Return worlds full of copies of an organism that does not die, after some ticks."""
-    made = advanced(engine(cells, worlds, genesis="fill", mutation={"probability": 0.0}), 1)
+def saturated_phase(cells: int, worlds: int, settled: int = 2000, **settings: object) -> Engine:
+    """Return worlds full of copies of an organism that balances its pole, after some ticks."""
+    copies = {"genesis": "fill", "mutation": {"probability": 0.0}}
+    made = advanced(engine(cells, worlds, **copies, **settings), 1)
     organisms = made.state.world.organisms
     genome = {
         name: jnp.broadcast_to(block, organisms.genome[name].shape) + 0

@@ -2,10 +2,12 @@
 
 import json
 from collections.abc import Iterator
+from dataclasses import replace
 from importlib.metadata import metadata
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
@@ -13,6 +15,9 @@ from primordia import compiled, device
 from primordia.cli.doctor import doctor
 from primordia.doctor import installed, memo, promises
 from primordia.doctor.promises import Trial
+from primordia.history.pedigree import genomes
+from primordia.organism.reliving.compare import Reliving, relive
+from tests.worlds import config
 
 
 def without_the_cure(function: Any) -> Any:
@@ -36,6 +41,29 @@ def test_a_trial_that_fails_in_any_way_is_a_fault(monkeypatch: pytest.MonkeyPatc
 
 def test_every_extra_of_the_package_is_named() -> None:
     assert set(installed.extras()) == set(metadata("primordia").get_all("Provides-Extra") or ())
+
+
+def test_it_finds_lives_and_genomes_that_differ_from_the_records(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = tmp_path / "run"
+    few = {"cells": 8, "hazard": 0.002}
+    monkeypatch.setattr(promises, "load", lambda task, given: config(task, **{**given, **few}))
+    assert promises._lived_again(run) == ""
+    assert promises._rebuilt(run) == ""
+
+    def changed(*of: Any) -> np.ndarray:
+        first, *others = genomes(*of)
+        return np.stack([first + np.float32(1e-3), *others])
+
+    def otherwise(*of: Any) -> Reliving:
+        found = relive(*of)
+        return replace(found, respects=tuple(replace(each, relived="?") for each in found.respects))
+
+    monkeypatch.setattr(promises, "genomes", changed)
+    assert promises._rebuilt(run).startswith("1 of ")
+    monkeypatch.setattr(promises, "relive", otherwise)
+    assert " differs in " in promises._lived_again(tmp_path / "other")
 
 
 @pytest.mark.slow
@@ -73,8 +101,9 @@ VERSIONS = dict.fromkeys((*device.PACKAGES, "device", "instruction_set"), "9")
 
 
 def test_versions_that_were_never_tried_are_named_once(home: Path) -> None:
-    assert "primordia doctor" in memo.warning(VERSIONS)
+    assert memo.warning(VERSIONS).endswith("`primordia doctor --device gpu`")
     assert memo.warning(VERSIONS) == ""
+    assert memo.warning({**VERSIONS, "device": "cpu"}).endswith("`primordia doctor`")
     assert "primordia doctor" in memo.warning({**VERSIONS, "jax": "10"})
 
 

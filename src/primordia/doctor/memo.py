@@ -26,8 +26,10 @@ def warning(versions: Mapping[str, Any]) -> str:
     if key in _read():
         return ""
     _write(key, TOLD)
+    gpu = "" if versions["device"] == device.CPU else " --device gpu"
     return (
-        "the promises were never tried with these versions on this machine; try `primordia doctor`"
+        "the promises were never tried with these versions on this machine;"
+        f" try `primordia doctor{gpu}`"
     )
 
 

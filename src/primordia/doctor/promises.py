@@ -1,7 +1,7 @@
-"""Trials of the promises with the versions and on the device of this machine.
+"""Trials of the promises with the versions and on a device of this machine.
 
-Each trial is small: lives alone and beside others, in chunks, on one thread, killed and resumed. All of
-them together take about half a minute.
+Each trial is small: lives alone and beside others, in chunks, on one thread, killed and resumed, and
+lived again from the records. All of them together take about half a minute on a CPU.
 """
 
 import os
@@ -26,7 +26,10 @@ from primordia.compiled import jit
 from primordia.config import load
 from primordia.engine.engine import Engine
 from primordia.habitats.cartpole.habitat import CartPole
+from primordia.history.births import genome_in
+from primordia.history.pedigree import genomes
 from primordia.law.motor import argmax
+from primordia.organism.reliving.compare import relive
 from primordia.random.trials import normal, words
 from primordia.runs import loop
 from primordia.runs.archive import Archive
@@ -51,7 +54,7 @@ class Trial(NamedTuple):
 
 
 def trials() -> Iterator[Trial]:
-    """Try each promise, and yield its result as soon as it is known."""
+    """Try each promise on the device that JAX computes on, and yield each result when it is known."""
     device.prepare()
     for name, attempt in _attempts():
         try:
@@ -72,8 +75,13 @@ def _attempts() -> Iterator[tuple[str, Callable[[], str]]]:
     alone: list[str] = []
     yield "a world beside others is the same as alone", partial(_beside, alone)
     yield "a world in chunks of 7 ticks is the same", _in_chunks
-    yield "a world on one thread is the same as on all", partial(_on_one_thread, alone)
+    if _platform() == device.CPU:
+        yield "a world on one thread is the same as on all", partial(_on_one_thread, alone)
     yield "a run that is killed and resumed is the same", partial(_killed, alone)
+    with tempfile.TemporaryDirectory() as folder:
+        run = Path(folder) / "run"
+        yield "lives that are lived again end as recorded", partial(_lived_again, run)
+        yield "genomes that the CPU rebuilds are those of the run", partial(_rebuilt, run)
 
 
 def _arithmetic() -> str:
@@ -161,9 +169,42 @@ def _killed(alone: list[str]) -> str:
         return _compared(run, alone, "resumed")
 
 
+def _lived_again(run: Path) -> str:
+    """Begin a run, and live the oldest of the living and the longest life of the dead again."""
+    loop.start(load(TASK, {"cells": CELLS, "seed": SEED, "stop": {"ticks": FEW}}), run)
+    archive = Archive(run)
+    lives = archive.lives
+    for died in (False, True):
+        (rows,) = np.nonzero(lives.died == died)
+        longest = rows[lives.lifespan[rows].argmax()]
+        found = relive(archive, int(lives.id[longest]))
+        if not found.agrees:
+            names = ", ".join(each.name for each in found.respects if not each.agrees)
+            return f"organism {lives.id[longest]} differs in {names}"
+    return ""
+
+
+def _rebuilt(run: Path) -> str:
+    """Rebuild the genomes of the living on the CPU, and compare them with those of the checkpoint."""
+    archive = Archive(run)
+    (living,) = np.nonzero(~archive.lives.died)
+    with device.selected(device.CPU):
+        rebuilt = genomes(archive, living)
+    numbers = archive.lives.id[living].tolist()
+    stored = [genome_in(archive.state, archive.layout, number, 0) for number in numbers]
+    differ = (rebuilt != np.stack(stored)).any(axis=1).sum()
+    return f"{differ} of {len(living)} genomes differ" if differ else ""
+
+
+def _platform() -> str:
+    """Return the platform that JAX computes on."""
+    return device.default().platform
+
+
 def _process(run: Path, *flags: str, **variables: str) -> subprocess.Popen[str]:
     """Begin the run of the world in a process of its own, which compiles for itself."""
     command = [sys.executable, "-m", "primordia", "run", TASK, "--quiet", *flags]
+    command += ["--device", _platform()]
     settings = f"--seed {SEED} --cells {CELLS} --ticks {TICKS} --until none".split()
     return subprocess.Popen(
         [*command, *settings, "--out", str(run)],
