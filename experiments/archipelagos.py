@@ -6,8 +6,9 @@ The experiment must have been run (`primordia experiment`). In each world EACH l
 island live again on every island, GAMES games of at most TICKS ticks without accidents; so do as many
 founders. The best founder of an island plays FRESH other games, since it was lucky in those in which it
 was chosen. An organism masters an island if it lives there longer than this founder. The line of one of
-the living is foreign if its ancestor at half of the ticks was born on another island. A table for each
-island and one for each world go to `results/` beside the file.
+the living is foreign if its ancestor at half of the ticks was born on another island. What is not known
+of an island that died out is left empty. A table for each island and one for each world go to `results/`
+beside the file.
 """
 
 from pathlib import Path
@@ -26,7 +27,8 @@ from primordia.runs.records import Records
 
 EACH, GAMES, FRESH, TICKS, LATE = 10, 3, 10, 1_000, 0.5
 NOTE = (
-    f"Natives: ticks that {EACH} late-born natives of the island live there, in games of at most"
+    "Living: organisms at the end."
+    f" Natives: ticks that {EACH} late-born natives of the island live there, in games of at most"
     f" {TICKS:,} ticks. Best founder: the best of as many founders as natives of all islands, in"
     f" {FRESH} other games than those in which it was chosen."
     " Foreigners: natives of the other islands. Masters: organisms that live longer than the best"
@@ -42,7 +44,7 @@ OF_WORLDS = (
 def report(file: Path) -> None:
     """Measure all arms of an experiment, and write both tables."""
     kept: dict[Path, list[_World]] = {}
-    best: dict[tuple[int, int], np.ndarray] = {}
+    best: dict[int, np.ndarray] = {}
 
     def worlds(run: Records) -> list["_World"]:
         if run.path not in kept:
@@ -58,8 +60,8 @@ def report(file: Path) -> None:
 class _World:
     """The late-born natives and the founders of a world, on every island."""
 
-    def __init__(self, run: Records, world: int, best: dict[tuple[int, int], np.ndarray]) -> None:
-        """`best`: by seed and number of founders, since worlds of one seed have the same founders."""
+    def __init__(self, run: Records, world: int, best: dict[int, np.ndarray]) -> None:
+        """`best`: of each seed, since worlds of one seed have the same founders."""
         self._run, self._world, islands = run, world, run.config.islands
         lives = run.lives
         late = np.flatnonzero(lives.late(LATE) & (lives.world == world))
@@ -67,10 +69,10 @@ class _World:
         rows = np.concatenate([spaced(late[home == k], EACH) for k in range(islands.count)])
         self.home = islands.of_cells(lives.cell[rows])
         self.lived = everywhere(run, players_of(run, rows), world, GAMES, TICKS)
-        if (self.seed, len(rows)) not in best:
-            founders = founders_of(run, np.array([world]), np.array([len(rows)]))[2]
-            best[self.seed, len(rows)] = self._in_fresh_games(founders)
-        self.best = best[self.seed, len(rows)]
+        if self.seed not in best:
+            founders = founders_of(run, np.array([world]), np.array([EACH * islands.count]))[2]
+            best[self.seed] = self._in_fresh_games(founders)
+        self.best = best[self.seed]
         self.mastered = self.lived > self.best
 
     def _in_fresh_games(self, founders: Players) -> np.ndarray:
@@ -89,22 +91,26 @@ class _World:
 
     def by_island(self) -> list[Row]:
         """Return a row for each island."""
-        foreign = self._foreign()
+        living, foreign = self._descent()
         found: list[Row] = []
         for number, name in enumerate(self._run.config.islands.names):
             here = self.home == number
-            natives, others = self.lived[here, number], self.lived[~here, number]
-            row = {
-                "natives": natives.mean(),
-                "best founder": self.best[number],
-                "natives / best founder": natives.mean() / self.best[number],
-                "foreigners": others.mean(),
-                "masters among natives": self.mastered[here, number].mean(),
-                "masters among foreigners": self.mastered[~here, number].mean(),
-                "foreign lines": foreign[number],
+            lived, mastered, best = (
+                self.lived[:, number],
+                self.mastered[:, number],
+                self.best[number],
+            )
+            row: Row = {
+                "living": int(living[number]),
+                "natives": _mean(lived[here]),
+                "best founder": _mean(best),
+                "natives / best founder": _mean(lived[here] / best),
+                "foreigners": _mean(lived[~here]),
+                "masters among natives": _mean(mastered[here]),
+                "masters among foreigners": _mean(mastered[~here]),
+                "foreign lines": _mean(foreign[number]),
             }
-            rounded = {key: round(float(value), 3) for key, value in row.items()}
-            found.append({"island": name, "seed": self.seed, **rounded})
+            found.append({"island": name, "seed": self.seed, **row})
         return found
 
     def generality(self) -> Row:
@@ -113,15 +119,21 @@ class _World:
         shares = {f"{k} or more": float((count >= k).mean()) for k in range(1, self.best.size + 1)}
         return {"seed": self.seed, **shares, "most": int(count.max())}
 
-    def _foreign(self) -> np.ndarray:
-        """Return the share of each island's living whose line came from another island, float64 (K,)."""
+    def _descent(self) -> tuple[np.ndarray, list[np.ndarray]]:
+        """Return how many live on each island, and whether the line of each came from another one."""
         lives, islands = self._run.lives, self._run.config.islands
         living = np.flatnonzero(~lives.died & (lives.world == self._world))
         line, half = living.copy(), int(lives.ended[living].max()) / 2
         while (young := (lives.born[line] > half) & (lives.parent_row[line] >= 0)).any():
             line[young] = lives.parent_row[line[young]]
         now, then = islands.of_cells(lives.cell[living]), islands.of_cells(lives.cell[line])
-        return np.array([(then[now == k] != k).mean() for k in range(islands.count)])
+        count = np.bincount(now, minlength=islands.count)
+        return count, [then[now == k] != k for k in range(islands.count)]
+
+
+def _mean(values: np.ndarray) -> float | str:
+    """Return a mean as it stands in a table; "" of nothing."""
+    return round(float(np.mean(values)), 3) if np.size(values) else ""
 
 
 if __name__ == "__main__":

@@ -84,9 +84,11 @@ class Lives:
 
     def check_world(self, world: int) -> None:
         """Raise InputError if nothing has lived in a world of this number."""
+        if not 0 <= world < self.worlds:
+            raise InputError(f"there is no world {world}; the worlds are 0 to {self.worlds - 1}")
         here = self._rows_of_world(world)
         if here.start == here.stop:
-            raise InputError(f"there is no world {world}; the worlds are 0 to {self.worlds - 1}")
+            raise InputError(f"nothing was born in world {world}")
 
     def by_world(self) -> "list[Lives]":
         """Return the lives of each world."""
