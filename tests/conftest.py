@@ -86,12 +86,14 @@ def _one_size() -> Iterator[None]:
 
 
 @pytest.fixture(autouse=True, scope="session")
-def kept_by_users() -> Iterator[int]:
-    """Keep more compiled functions than the process of a user does, whose number is returned."""
+def kept_by_users() -> int:
+    """Keep more compiled functions than the process of a user does, whose number is returned.
+
+    They are kept to the end of the process, since it takes seconds to free them.
+    """
     most: int = compiled._kept.cache_parameters()["maxsize"]
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(compiled, "_kept", lru_cache(2 * most)(compiled._jitted))
-        yield most
+    compiled._kept = lru_cache(2 * most)(compiled._jitted)
+    return most
 
 
 @pytest.fixture(autouse=True, scope="session")
