@@ -4,31 +4,36 @@
 
 The experiment must have been run (`primordia experiment`). In each world EACH late-born natives of each
 island live again on every island, GAMES games of at most TICKS ticks without accidents; so do as many
-founders. The best founder of an island plays FRESH other games, since it was lucky in those in which it
-was chosen. An organism masters an island if it lives there longer than this founder. The line of one of
-the living is foreign if its ancestor at half of the ticks was born on another island. What is not known
-of an island that died out is left empty. A table for each island and one for each world go to `results/`
-beside the file.
+founders. On the host, where a game takes a thousand times as long, FEWER play, and their results are kept
+in the experiment's directory. The best founder of an island plays FRESH other games, since it was lucky
+in those in which it was chosen. An organism masters an island if it lives there longer than this founder.
+The line of one of the living is foreign if its ancestor at half of the ticks was born on another island.
+What is not known of an island that died out is left empty. A table for each island and one for each world
+go to `results/` beside the file.
 """
 
+from collections.abc import Callable
 from pathlib import Path
 
 import named
 import numpy as np
 from by_world import Row, measure
 
+import primordia
 from primordia.assays.transplant import everywhere
 from primordia.history.series import spaced
-from primordia.organism.playing.games import Players
-from primordia.organism.playing.players import founders_of, players_of
+from primordia.organism.playing.games import Players, lifespans_in_games
+from primordia.organism.playing.players import founders_of, moved, players_of
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
 from primordia.runs.records import Records
 
 EACH, GAMES, FRESH, TICKS, LATE = 10, 3, 10, 1_000, 0.5
+FEWER = 5, 1
+"""EACH and GAMES on the host."""
 NOTE = (
     "Living: organisms at the end."
-    f" Natives: ticks that {EACH} late-born natives of the island live there, in games of at most"
+    " Natives: ticks that {} late-born natives of the island live there, in {} games of at most"
     f" {TICKS:,} ticks. Best founder: the best of as many founders as natives of all islands, in"
     f" {FRESH} other games than those in which it was chosen."
     " Foreigners: natives of the other islands. Masters: organisms that live longer than the best"
@@ -36,8 +41,8 @@ NOTE = (
     " another island."
 )
 OF_WORLDS = (
-    f"Of {EACH} late-born natives of each island: the share that masters a number of islands, and the"
-    " largest number that one organism masters."
+    "Of {} late-born natives of each island, in {} games on each: the share that masters a number of"
+    " islands, and the largest number that one organism masters."
 )
 
 
@@ -51,10 +56,24 @@ def report(file: Path) -> None:
             kept[run.path] = [_World(run, world, best) for world in range(run.config.seeds)]
         return kept[run.path]
 
+    number = _sample(primordia.load(named.arms(file)[0]).opened())
     measure(
-        file, "islands", lambda run: [row for each in worlds(run) for row in each.by_island()], NOTE
+        file,
+        "islands",
+        lambda run: [row for each in worlds(run) for row in each.by_island()],
+        NOTE.format(*number),
     )
-    measure(file, "generalists", lambda run: [each.generality() for each in worlds(run)], OF_WORLDS)
+    measure(
+        file,
+        "generalists",
+        lambda run: [each.generality() for each in worlds(run)],
+        OF_WORLDS.format(*number),
+    )
+
+
+def _sample(run: Records) -> tuple[int, int]:
+    """Return how many natives of each island play, and how many games on each."""
+    return (EACH, GAMES) if run.config.build_habitat().kind == "jax" else FEWER
 
 
 class _World:
@@ -63,26 +82,45 @@ class _World:
     def __init__(self, run: Records, world: int, best: dict[int, np.ndarray]) -> None:
         """`best`: of each seed, since worlds of one seed have the same founders."""
         self._run, self._world, islands = run, world, run.config.islands
-        lives = run.lives
+        lives, (each, self._games) = run.lives, _sample(run)
         late = np.flatnonzero(lives.late(LATE) & (lives.world == world))
         home = islands.of_cells(lives.cell[late])
-        rows = np.concatenate([spaced(late[home == k], EACH) for k in range(islands.count)])
+        rows = np.concatenate([spaced(late[home == k], each) for k in range(islands.count)])
         self.home = islands.of_cells(lives.cell[rows])
-        self.lived = everywhere(run, players_of(run, rows), world, GAMES, TICKS)
+        self.lived = self._kept(
+            f"{run.path.name}-{world}",
+            lambda: everywhere(run, players_of(run, rows), world, self._games, TICKS),
+        )
         if self.seed not in best:
-            founders = founders_of(run, np.array([world]), np.array([EACH * islands.count]))[2]
-            best[self.seed] = self._in_fresh_games(founders)
+            count = np.array([each * islands.count])
+            best[self.seed] = self._kept(
+                f"founders-{self.seed}",
+                lambda: self._in_fresh_games(founders_of(run, np.array([world]), count)[2]),
+            )
         self.best = best[self.seed]
         self.mastered = self.lived > self.best
+
+    def _kept(self, name: str, played: Callable[[], np.ndarray]) -> np.ndarray:
+        """Return what was played before, or play it and keep it."""
+        file = self._run.path.parent / "played" / f"{name}.npy"
+        if not file.exists():
+            file.parent.mkdir(exist_ok=True)
+            np.save(file, played())
+        return np.load(file)
 
     def _in_fresh_games(self, founders: Players) -> np.ndarray:
         """Return the mean ticks that the best founder of each island lives there, float64 (K,)."""
         run, world = self._run, self._world
-        chosen = everywhere(run, founders, world, GAMES, TICKS).argmax(axis=0)
+        chosen = everywhere(run, founders, world, self._games, TICKS).argmax(axis=0)
         seeds = wide(np.repeat(run.world_seeds[[world]], len(chosen)))
         keys = stream(seeds, Purpose.REBIRTH, wide(chosen))
-        best = founders.take(chosen)._replace(keys=keys)
-        return np.diag(everywhere(run, best, world, FRESH, TICKS))
+        best, number = founders.take(chosen)._replace(keys=keys), np.array([world])
+        games = 1 if best.deterministic else FRESH
+        lived = [
+            lifespans_in_games(moved(run, best.take(np.array([k])), number, k), games, TICKS).mean()
+            for k in range(len(chosen))
+        ]
+        return np.array(lived)
 
     @property
     def seed(self) -> int:
@@ -95,11 +133,8 @@ class _World:
         found: list[Row] = []
         for number, name in enumerate(self._run.config.islands.names):
             here = self.home == number
-            lived, mastered, best = (
-                self.lived[:, number],
-                self.mastered[:, number],
-                self.best[number],
-            )
+            lived, mastered = self.lived[:, number], self.mastered[:, number]
+            best = self.best[number]
             row: Row = {
                 "living": int(living[number]),
                 "natives": _mean(lived[here]),
