@@ -45,6 +45,33 @@ def test_a_torus_has_a_border_below_each_band_and_its_name_beside_it() -> None:
     assert not strip[top + zoom - 10 : top + zoom + 10].any()
 
 
+def test_islands_of_a_well_mixed_world_fill_whole_rows_with_their_names_to_the_left() -> None:
+    """Twelve and six cells: five columns are nearest to a square, and islands fill rows of three."""
+    shore = Islands(("dune", "marsh"), (0, 12, 18))
+    form = shape(Placement(topology="well-mixed"), 18, shore)
+    assert form.cells.tolist() == [*range(18)]
+    zoom = (SIDE - borders.STRIP) // 6
+    left = borders.STRIP + (SIDE - borders.STRIP - 3 * zoom) // 2
+    picture = form.draw(np.repeat(GREY[:1], 18, axis=0))
+    named = (picture[:, :left] != PAPER).any(axis=2)
+    high, wide = np.flatnonzero(named.any(axis=1)), np.flatnonzero(named.any(axis=0))
+    top = (SIDE - 6 * zoom) // 2
+    assert abs(high[high < top + 4 * zoom].mean() - (top + 2 * zoom)) < zoom / 4
+    assert abs(high[high > top + 4 * zoom].mean() - (top + 5 * zoom)) < zoom / 4
+    assert wide[-1] >= left - 2 * borders.GAP
+
+
+def test_islands_without_rows_of_their_own_have_names_beside_most_of_their_cells() -> None:
+    """Seven and nine cells in rows of four: the second row is the first island's, but for a cell."""
+    shore = Islands(("dune", "marsh"), (0, 7, 16))
+    picture = shape(Placement(topology="well-mixed"), 16, shore).draw(GREY)
+    named = (picture[:, : borders.STRIP] != PAPER).any(axis=2)
+    (rows,) = np.nonzero(named.any(axis=1))
+    half = (rows < SIDE / 2).nonzero()[0]
+    for own, middle in ((rows[half], SIDE / 4), (np.delete(rows, half), 3 * SIDE / 4)):
+        assert abs(own.mean() - middle) < 10
+
+
 def test_a_ring_has_rays_at_its_borders_and_names_around_it() -> None:
     picture = drawn("ring", BAYS)
     half = SIDE // 2

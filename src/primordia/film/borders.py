@@ -11,6 +11,8 @@ STRIP = 20
 LETTERS, COLOUR = 13, (200, 198, 192)
 WIDTH = 4
 """pixels, the largest width of a border"""
+GAP = 4
+"""pixels between a world and the names to its left"""
 
 
 def between(island: np.ndarray, width: int) -> np.ndarray:
@@ -42,17 +44,22 @@ def rays(x: np.ndarray, y: np.ndarray, islands: Islands) -> np.ndarray:
 
 
 def name_bands(picture: np.ndarray, left: int, bands: list[tuple[str, int, int]]) -> None:
-    """Write names upwards beside a world, in a strip that ends at the pixel `left`.
+    """Write names to the left of a world, or upwards if there is no room for the longest one.
+
+    A name that has no room even so is left out.
 
     Args:
         picture: uint8 (rows, columns, 3).
         left: the first column of the world.
         bands: each island's name, and its first and last pixel from the top.
     """
-    for name, top, bottom in bands:
-        drawn = _words(name).rotate(90, expand=True)
+    words = [_words(name) for name, _, _ in bands]
+    upwards = max((each.width for each in words), default=0) > left - 2 * GAP
+    for each, (_, top, bottom) in zip(words, bands, strict=True):
+        drawn = each.rotate(90, expand=True) if upwards else each
+        x = left - (STRIP / 2 if upwards else GAP + drawn.width / 2)
         if drawn.height <= bottom - top:
-            _put(picture, drawn, left - STRIP / 2, (top + bottom) / 2)
+            _put(picture, drawn, x, (top + bottom) / 2)
 
 
 def name_sectors(picture: np.ndarray, radius: float, islands: Islands) -> None:

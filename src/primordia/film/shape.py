@@ -31,8 +31,19 @@ def shape(placement: Placement, cells: int, islands: Islands | None = None) -> "
         return Grid(rows, columns, islands=several)
     if placement.topology == "ring":
         return Ring(cells, several)
-    columns = int(np.ceil(np.sqrt(cells)))
+    columns = _columns(cells, several)
     return Grid(-(-cells // columns), columns, cells, several)
+
+
+def _columns(cells: int, islands: Islands | None) -> int:
+    """Return the columns of a well-mixed world: those of a square, or fewer, if islands fill whole rows
+    then."""
+    square = int(np.ceil(np.sqrt(cells)))
+    if islands is None:
+        return square
+    lengths = np.diff(islands.bounds)
+    fitting = max(width for width in range(1, square + 1) if not (lengths % width).any())
+    return fitting if 3 * fitting >= square else square
 
 
 class Grid:
@@ -58,13 +69,13 @@ class Grid:
             self._mark(islands, np.minimum(numbers, islands.bounds[-1] - 1))
 
     def _mark(self, islands: Islands, numbers: np.ndarray) -> None:
-        """Prepare the borders of islands, and write their names beside their rows."""
+        """Prepare the borders of islands, and write their names beside rows that are mostly theirs."""
         island = self._large(islands.of_cells(numbers))
         self._borders = borders.between(island, min(WIDTH, self._zoom // 2))
-        rows = np.arange(len(island))[:, None]
         bands = []
         for number, name in enumerate(islands.names):
-            if (own := rows[(island == number).any(axis=1), 0]).size:
+            (own,) = np.nonzero((island == number).mean(axis=1) > 0.5)
+            if own.size:
                 bands.append((name, self._top + int(own[0]), self._top + int(own[-1]) + 1))
         borders.name_bands(self._paper, self._left, bands)
 
