@@ -103,9 +103,9 @@ $(VENV)/installed-mutants: $(VENV)/installed-dev
 	$(BIN)/python -m pip install --quiet $(CONSTRAINTS) --group mutants
 	@touch $@
 
-$(VENV)/installed-gpu: $(VENV)/installed
+$(VENV)/installed-gpu: $(VENV)/installed-dev
 	@if nvidia-smi > /dev/null 2>&1; then \
-	  $(BIN)/python -m pip install --quiet $(CONSTRAINTS) --editable '.[gpu,gymnax,craftax,playground]'; touch $@; fi
+	  $(BIN)/python -m pip install --quiet $(CONSTRAINTS) --editable '.[gpu]' && touch $@; fi
 
 $(VENV)/installed-docs: $(VENV)/installed-dev
 	$(BIN)/python -m pip install --quiet $(CONSTRAINTS) --group docs

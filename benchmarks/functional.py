@@ -101,7 +101,7 @@ def bare(name: str, cells: int) -> Callable[[], float]:
         key, acting, stepping = jax.random.split(key, 3)
         step = jax.vmap(lambda *given: env.step_env(*given, params))
         seen, states, *_ = step(jax.random.split(stepping, cells), states, drawn(acting))
-        return (key, states), seen.sum()
+        return (key, states), seen[:, :1].sum()
 
     @jax.jit
     def play(key: Array, states: Any) -> Any:

@@ -2,8 +2,9 @@
 
     python benchmarks/gpu.py [--minutes 9] [--device cpu] [--cells 32,1024] [--json FILE]
 
-If JAX finds no GPU, a line says so, and nothing is measured. Each row is printed as soon as it is known.
-What has not begun when the time is nearly up is left out, and named.
+If JAX finds no GPU, a line says so, and nothing is measured. Each result is printed as soon as it is
+known, and each row is then in the file. What has not begun when the time is nearly up is left out, and
+named. The exit status is 1 if a promise does not hold.
 
 - promises: the trials of `primordia doctor`.
 - poles: organism-ticks per second of full worlds of CartPole whose organisms balance their poles. `limit`
@@ -33,7 +34,8 @@ from primordia.errors import InputError
 from speed import limit_rate
 from worlds import rate, saturated_phase
 
-CELLS = [32, 1024, 32_768, 1_048_576]
+POLES = [(1, 32), (1, 1024), (1, 32_768), (1, 1_048_576), (1024, 32)]
+"""worlds, and cells of each"""
 ENVIRONMENT_CELLS = [1024, 4096, 65_536]
 ENVIRONMENTS = {
     "Breakout-MinAtar": "MinAtar-Breakout-survival",
@@ -55,55 +57,52 @@ def main() -> None:
     parser.add_argument("--json", type=Path, help="write the figures to this file")
     chosen = parser.parse_args()
     ends = time.monotonic() + 60 * chosen.minutes - LEFT
-    found: dict[str, Any] = {"date": datetime.date.today().isoformat()}
-    if (promises := _promises(chosen.device)) is None:
+    promises = list(_promises(chosen.device))
+    if not promises:
         return
     sizes = [int(word) for word in chosen.cells.split(",") if word]
+    rows: list[dict[str, Any]] = []
     with device.selected(chosen.device):
-        found |= {**device.versions(), "promises": promises, "rows": []}
-        for names, measured in _measurements(sizes):
-            label = " ".join(f"{value:,}" if isinstance(value, int) else value for value in names)
-            if time.monotonic() > ends:
-                print(f"{label}: left out, no time")
-                continue
-            row = {"what": label, **_tried(measured)}
-            found["rows"].append(row)
-            print(json.dumps(row), flush=True)
+        about = {"date": datetime.date.today().isoformat(), **device.versions()}
+        for what, measured in _measurements(sizes):
+            in_time = time.monotonic() < ends
+            rows.append({"what": what, **(_tried(measured) if in_time else {"error": "no time"})})
+            print(json.dumps(rows[-1]), flush=True)
             jax.clear_caches()
-    if chosen.json:
-        chosen.json.write_text(json.dumps(found, indent=1) + "\n")
+            if chosen.json:
+                found = {**about, "promises": promises, "rows": rows}
+                chosen.json.write_text(json.dumps(found, indent=1) + "\n")
+    sys.exit(any(line.startswith("FAILS") for line in promises))
 
 
-def _promises(name: str) -> dict[str, str] | None:
-    """Return the fault of each promise, "" if it holds, or None if there is no such device.
+def _promises(name: str) -> Iterator[str]:
+    """Yield a line for each promise, and print all that the doctor says; nothing if it says nothing.
 
     They are tried in a process of its own, since a process keeps most of a GPU's memory to itself.
     """
-    command = [sys.executable, "-m", "primordia", "doctor", "--json", "--device", name]
-    done = subprocess.run(command, capture_output=True, text=True)
-    if not done.stdout:
-        print(done.stderr.strip())
-        return None
-    trials = {trial["name"]: trial["fault"] for trial in json.loads(done.stdout)["trials"]}
-    for trial, fault in trials.items():
-        print(f"{'FAILS' if fault else 'holds':7}{trial}" + (fault and f": {fault}"), flush=True)
-    return trials
+    command = [sys.executable, "-u", "-m", "primordia", "doctor", "--device", name]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as doctor:
+        assert doctor.stdout is not None
+        for line in doctor.stdout:
+            print(line, end="", flush=True)
+            if line.startswith(("holds", "FAILS")):
+                yield line.strip()
 
 
-def _measurements(sizes: list[int]) -> Iterator[tuple[tuple, Callable[[], dict[str, float]]]]:
-    """Yield the names and the function of each measurement, the most wanted first."""
-    for cells in sizes or CELLS:
-        yield ("poles", cells), partial(_poles, cells)
+def _measurements(sizes: list[int]) -> Iterator[tuple[str, Callable[[], dict[str, float]]]]:
+    """Yield the name and the function of each measurement, the most wanted first."""
+    for worlds, cells in [(1, size) for size in sizes] or POLES:
+        yield f"poles {worlds:,} x {cells:,}", partial(_poles, worlds, cells)
     for cells in sizes or ENVIRONMENT_CELLS:
         for env, task in ENVIRONMENTS.items():
-            yield (env, cells), partial(_environment, env, task, cells)
+            yield f"{env} {cells:,}", partial(_environment, env, task, cells)
 
 
-def _poles(cells: int) -> dict[str, float]:
-    calm = saturated_phase(cells, 1, settled=1)
+def _poles(worlds: int, cells: int) -> dict[str, float]:
+    calm = saturated_phase(cells, worlds, settled=1)
     limit_rate(calm)
     rates = {"limit": limit_rate(calm), "calm": rate(calm, SECONDS)}
-    dying = saturated_phase(cells, 1, settled=1, hazard=HAZARD)
+    dying = saturated_phase(cells, worlds, settled=1, hazard=HAZARD)
     rate(dying, SECONDS)
     rates["births"] = rate(dying, SECONDS)
     return {

@@ -77,13 +77,16 @@ def moran(births: int) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
 
 
 def measured(words: list[str]) -> tuple[float, float, float]:
-    """Return wall seconds, processor seconds and peak gigabytes of one command."""
+    """Return wall seconds, processor seconds and peak gigabytes of one command.
+
+    `replay` ends with status 1, since the life ends otherwise than recorded.
+    """
     command = [sys.executable, "-m", "primordia", *words]
     began = time.perf_counter()
-    quiet = [(os.POSIX_SPAWN_OPEN, stream, os.devnull, os.O_WRONLY, 0) for stream in (1, 2)]
+    quiet = [(os.POSIX_SPAWN_OPEN, 1, os.devnull, os.O_WRONLY, 0)]
     child = os.posix_spawn(sys.executable, command, os.environ, file_actions=quiet)
     _, status, usage = os.wait4(child, 0)
-    assert status == 0 or words[0] == "replay", command
+    assert os.waitstatus_to_exitcode(status) == (words[0] == "replay"), command
     wall = time.perf_counter() - began
     return wall, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024 / 1e9
 
@@ -97,11 +100,9 @@ def main(births: int) -> None:
         subprocess.run([sys.executable, __file__, str(births), str(run)], check=True)
         print("| command | seconds | processor seconds | peak GB |\n|---|---|---|---|")
         for line in COMMANDS.strip().splitlines():
-            places = {"RUN": run, "OUT": out, "LAST": births - 1}
-            words = line
-            for name, value in places.items():
-                words = words.replace(name, str(value))
-            rounds = [measured(words.split()) for _ in range(ROUNDS)]
+            places = {"RUN": str(run), "LAST": str(births - 1)}
+            words = [places.get(word, word.replace("OUT", str(out))) for word in line.split()]
+            rounds = [measured(words) for _ in range(ROUNDS)]
             wall, spent = (", ".join(f"{each[k]:.1f}" for each in rounds) for k in (0, 1))
             peak = max(each[2] for each in rounds)
             print(f"| `{line}` | {wall} | {spent} | {peak:.2f} |", flush=True)

@@ -81,7 +81,7 @@ CLOCKWORK: dict[str, Any] = {
     "hazard": 1e-9,
     "metabolism": {"store": 30.5},
 }
-"""The same compiled code, but no random draw matters: all starve in tick 31, and so on."""
+"""The herd's law without chance: all cells are filled, all organisms starve in tick 31, and so on."""
 
 RING: dict[str, Any] = {
     **MEADOW,

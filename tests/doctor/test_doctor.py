@@ -1,9 +1,11 @@
 """The doctor: what is installed, whether the promises hold, and that it finds when they do not."""
 
 import json
+import subprocess
 from collections.abc import Iterator
 from dataclasses import replace
 from importlib.metadata import metadata
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -66,6 +68,27 @@ def test_it_finds_lives_and_genomes_that_differ_from_the_records(
     assert " differs in " in promises._lived_again(tmp_path / "other")
 
 
+def test_runs_of_other_processes_are_on_the_device_that_is_tried(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[list[str]] = []
+    monkeypatch.setattr(promises, "_platform", lambda: "gpu")
+    monkeypatch.setattr(subprocess, "Popen", lambda words, **_: asked.append(words))
+    promises._begun(tmp_path / "run", "--speed", "9")
+    assert ("--device", "gpu") in pairwise(asked[0])
+    trials = [name for name, _ in promises._attempts()]
+    assert "a world on one thread is the same as on all" not in trials
+    assert trials[-2:] == [
+        "lives that are lived again end as recorded",
+        "genomes that the CPU rebuilds are those of the run",
+    ]
+
+
+def test_what_a_run_says_that_ends_early_is_the_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(promises, "TASK", "Nothing-survival")
+    assert "Nothing-survival" in promises._killed(["digest"])
+
+
 @pytest.mark.slow
 def test_the_promises_hold_here() -> None:
     assert [trial for trial in promises.trials() if trial.fault] == []
@@ -86,6 +109,8 @@ def test_the_exit_status_says_whether_all_promises_hold(
         yield Trial("worlds", fault)
 
     monkeypatch.setattr(promises, "trials", trials)
+    refused = CliRunner().invoke(doctor, ["--device", "tpu"])
+    assert "JAX finds no 'tpu' device" in str(refused.exception)
     shown = CliRunner().invoke(doctor)
     assert shown.exit_code == (1 if fault else 0)
     assert "holds  chunks\n" in shown.output

@@ -77,6 +77,10 @@ def run(settings: dict[str, Any], tmp_path_factory: pytest.TempPathFactory) -> P
     return path
 
 
+BRIEF = {**HERD, "replication": 0.02, "metabolism": {"store": 30.5}}
+"""A herd that dies out, and begins again in the tick of the last deaths."""
+
+
 @pytest.fixture(
     scope="module",
     params=["herd", *(pytest.param(w, marks=pytest.mark.slow) for w in ("mills", *WORLDS))],
@@ -85,7 +89,7 @@ def twins(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> tuple[Lived, Path]:
     """The same worlds in JAX, and in a habitat on the host that tallies the ticks of each life."""
-    settings = {"herd": HERD, "mills": MILLS, **WORLDS}[request.param]
+    settings = {"herd": BRIEF, "mills": MILLS, **WORLDS}[request.param]
     path = tmp_path_factory.mktemp("clocked") / "run"
     loop.start(config(on_host(settings, "Clocked"), stop={"ticks": 99}), path)
     loop.resume(path, {"ticks": TICKS})
@@ -204,6 +208,8 @@ def test_deaths_record_the_tallies_at_death(clocked: Path) -> None:
     lives, dead = Archive(clocked).lives, primordia.load(clocked).arrays("deaths")
     rows = [lives.row(*pair) for pair in zip(dead["id"], dead["world"], strict=True)]
     assert len(rows) > 100
+    ends = set(zip(dead["tick"], lives.cell[rows], strict=True))
+    assert not ends.isdisjoint(zip(lives.born, lives.cell, strict=True))
     np.testing.assert_array_equal(dead["ticks"], lives.lifespan[rows])
     np.testing.assert_array_equal(dead["ticks_down"], -lives.lifespan[rows])
 

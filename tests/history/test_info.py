@@ -29,9 +29,12 @@ SETTINGS: dict[str, Any] = {
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> primordia.Run:
+    """Make a run in which some worlds die out."""
     folder = tmp_path_factory.mktemp("info") / "run"
     loop.start(config(SETTINGS), folder)
-    return primordia.load(folder)
+    made = primordia.load(folder)
+    assert any(world["extinctions"] for world in made.info()["worlds"])
+    return made
 
 
 @pytest.mark.parametrize("number", range(3))

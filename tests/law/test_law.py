@@ -108,6 +108,10 @@ def test_genesis_can_fill_every_cell() -> None:
     assert len(np.unique(run.genomes(), axis=0)) == 72
 
 
+def test_the_clockwork_has_the_compiled_code_of_the_herd() -> None:
+    assert law_of(CLOCKWORK).compiled == law_of(HERD).compiled
+
+
 @pytest.mark.parametrize(
     ("change", "same"),
     [

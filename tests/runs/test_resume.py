@@ -68,14 +68,14 @@ def killed(mill: Path, run: Path) -> int:
     so it is not killed while it writes such code.
     """
     process = begin("run", mill, "--ticks", ENDLESS, "--out", run, *SLOWLY, "--quiet")
-    deadline = time.monotonic() + 60
-    while time.monotonic() < deadline and process.poll() is None:
-        known = [path.name for path in run.glob("checkpoints/0*")]
-        if known and int(max(known)) >= 3:
-            break
-        time.sleep(0.01)
-    process.send_signal(signal.SIGSTOP)
     try:
+        deadline = time.monotonic() + 60
+        while time.monotonic() < deadline and process.poll() is None:
+            known = [path.name for path in run.glob("checkpoints/0*")]
+            if known and int(max(known)) >= 3:
+                break
+            time.sleep(0.01)
+        process.send_signal(signal.SIGSTOP)
         complains(here("resume", run), 2, str(run), "another process")
     finally:
         process.kill()

@@ -1,6 +1,7 @@
 """The command doctor: what is installed, and whether the promises hold here."""
 
 import json
+import os
 
 import click
 
@@ -11,15 +12,17 @@ from primordia.cli.flags import device_option
 @click.option("--json", "as_json", is_flag=True, help="Write JSON, in one piece, at the end.")
 @device_option
 def doctor(as_json: bool, device: str) -> None:
-    """Show versions, devices and extras, and try the promises with them, in less than a minute.
+    """Show versions, devices and extras, and try the promises with them, in about a minute.
 
-    A life must be the same alone and beside others, in chunks of any length, on one thread and on
-    all, after the run was killed and resumed, and when it is lived again from the records. Each trial
-    is one line. The exit status is 1 if a promise does not hold here.
+    A life must be the same alone and beside others, in chunks of any length, after the run was killed
+    and resumed, and when it is lived again from the records; on a CPU also on one thread and on all.
+    Each trial is one line. The exit status is 1 if a promise does not hold here.
     """
     from primordia.device import selected
     from primordia.doctor import installed, memo, promises
 
+    # By default a process takes most of a GPU's memory, and here two of them compute at once.
+    os.environ.setdefault("XLA_PYTHON_CLIENT_PREALLOCATE", "false")
     with selected(device):
         facts, extras = installed.facts(), installed.extras()
         if not as_json:

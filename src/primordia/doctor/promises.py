@@ -151,20 +151,20 @@ def _in_chunks() -> str:
 def _on_one_thread(alone: list[str]) -> str:
     with tempfile.TemporaryDirectory() as folder:
         run = Path(folder) / "run"
-        with _process(run, PRIMORDIA_CORES="1") as process:
-            said = process.communicate()[1]
-        return _compared(run, alone, "on one thread") if process.returncode == 0 else said[-200:]
+        process = _begun(run, PRIMORDIA_CORES="1")
+        return _compared(run, alone, "on one thread") if process.wait() == 0 else _said(run)
 
 
 def _killed(alone: list[str]) -> str:
     """Kill a run after its first checkpoint, and compare it when it has been resumed."""
     with tempfile.TemporaryDirectory() as folder:
         run = Path(folder) / "run"
-        with _process(run, "--checkpoint-every", "0", "--speed", f"{TICKS}") as process:
-            while process.poll() is None and not list(run.glob("checkpoints/*/manifest.json")):
-                time.sleep(0.05)
-            process.send_signal(signal.SIGKILL)
-            process.communicate()
+        process = _begun(run, "--checkpoint-every", "0", "--speed", f"{TICKS}")
+        while process.poll() is None and not list(run.glob("checkpoints/*/manifest.json")):
+            time.sleep(0.05)
+        process.send_signal(signal.SIGKILL)
+        if process.wait() not in (0, -signal.SIGKILL):
+            return _said(run)
         loop.resume(run)
         return _compared(run, alone, "resumed")
 
@@ -192,7 +192,7 @@ def _rebuilt(run: Path) -> str:
         rebuilt = genomes(archive, living)
     numbers = archive.lives.id[living].tolist()
     stored = [genome_in(archive.state, archive.layout, number, 0) for number in numbers]
-    differ = (rebuilt != np.stack(stored)).any(axis=1).sum()
+    differ = (rebuilt.view(np.uint32) != np.stack(stored).view(np.uint32)).any(axis=1).sum()
     return f"{differ} of {len(living)} genomes differ" if differ else ""
 
 
@@ -201,17 +201,25 @@ def _platform() -> str:
     return device.default().platform
 
 
-def _process(run: Path, *flags: str, **variables: str) -> subprocess.Popen[str]:
+def _begun(run: Path, *flags: str, **variables: str) -> subprocess.Popen[bytes]:
     """Begin the run of the world in a process of its own, which compiles for itself."""
     command = [sys.executable, "-m", "primordia", "run", TASK, "--quiet", *flags]
-    command += ["--device", _platform()]
+    command += ["--device", _platform(), "--out", str(run)]
     settings = f"--seed {SEED} --cells {CELLS} --ticks {TICKS} --until none".split()
-    return subprocess.Popen(
-        [*command, *settings, "--out", str(run)],
-        env=os.environ | {"JAX_ENABLE_COMPILATION_CACHE": "false"} | variables,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-        text=True,
+    with run.with_suffix(".said").open("wb") as said:
+        return subprocess.Popen(
+            [*command, *settings],
+            env=os.environ | {"JAX_ENABLE_COMPILATION_CACHE": "false"} | variables,
+            stdout=subprocess.DEVNULL,
+            stderr=said,
+        )
+
+
+def _said(run: Path) -> str:
+    """Return the end of what the process of a run has said."""
+    return (
+        run.with_suffix(".said").read_text(encoding="utf-8", errors="replace")[-200:]
+        or "the process ended"
     )
 
 
