@@ -8,6 +8,7 @@ import shlex
 import subprocess
 import sys
 from importlib import import_module
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -145,6 +146,14 @@ def test_every_command_and_block_of_a_page_works(
     """Commands and Python run in this process, for speed."""
     for kind, text in blocks(page):
         try_out(kind, text, tmp_path, law)
+
+
+def test_no_sentence_goes_on_as_an_item_of_a_list() -> None:
+    """A line of a paragraph that begins with `470.` would be shown as an item of its own."""
+    for page in PAGES:
+        items = re.findall(r"^ *(\d{1,9})[.)] ", page.read_text(encoding="utf-8"), re.MULTILINE)
+        for before, item in pairwise(["0", *items]):
+            assert int(item) in (1, int(before) + 1), f"{name(page)}: {item} after {before}"
 
 
 def test_links_of_pages_lead_to_files_that_exist() -> None:
