@@ -176,10 +176,10 @@ def pooled_key(count: int) -> dict[str, str]:
 
 
 def island_colours(names: Sequence[str]) -> dict[str, str]:
-    """Return a colour for each island; many islands, in their order, are colours of one scale."""
+    """Return a colour for each island; many islands have a darkened rainbow, in their order."""
     if len(names) <= len(ISLANDS):
         return dict(zip(names, ISLANDS, strict=False))
-    scale = matplotlib.colormaps["viridis"](np.linspace(0, 0.92, len(names)))
+    scale = 0.85 * matplotlib.colormaps["turbo"](np.linspace(0.03, 0.97, len(names)))[:, :3]
     return {name: to_hex(colour) for name, colour in zip(names, scale, strict=True)}
 
 
