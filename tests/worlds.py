@@ -1,10 +1,12 @@
 """Worlds for tests: settings of small tasks, and runs that stay in memory."""
 
+from pathlib import Path
 from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
 
+import primordia
 from primordia.config import Config, load, validated
 from primordia.engine.engine import Engine
 from primordia.engine.state import State
@@ -144,6 +146,11 @@ def late_worlds(law: Law, worlds: Worlds, tick: int, births: int) -> Worlds:
         sample_wait=jnp.full(count, law.sample_every - tick % law.sample_every, jnp.int32),
         looks=initial_looks(law, count, tick),
     )
+
+
+def digests_of(place: Path) -> list[str]:
+    """Return the digest of each world of a run or of an arm."""
+    return [world["digest"] for world in primordia.load(place).info()["worlds"]]
 
 
 class Lived:

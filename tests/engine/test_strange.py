@@ -23,11 +23,11 @@ from primordia.organism.reliving.course import Course, recorded
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import loop
 from primordia.runs.archive import Archive
-from primordia.runs.digest import digests as digests_of
+from primordia.runs.digest import digests
 from tests.history.test_rebuilding import assert_rebuilt
 from tests.strange import BLOCKS, GIVING, PASSING, QUIET, SEEDS, STRANGE, STRANGER, TICKS
 from tests.test_goldens import assert_lived_as_it_did
-from tests.worlds import HERD, MILLS, Lived, config
+from tests.worlds import HERD, MILLS, Lived, config, digests_of
 
 WORLDS = {
     "strange": STRANGE,
@@ -101,13 +101,9 @@ def clocked(twins: tuple[Lived, Path]) -> Path:
     return twins[1]
 
 
-def digests(run: Path) -> list[str]:
-    return [world["digest"] for world in primordia.load(run).info()["worlds"]]
-
-
 def assert_lived_alike(run: Archive, fork: Archive) -> None:
     """Two runs have the same state at their ends. What a fork inherited is not in its records."""
-    one, other = (digests_of({}, each.state, 2, each.config.islands) for each in (run, fork))
+    one, other = (digests({}, each.state, 2, each.config.islands) for each in (run, fork))
     assert one == other
     assert len(set(one)) == 2
 
@@ -164,7 +160,7 @@ def test_a_run_that_was_stopped_goes_on_as_if_it_had_not_been(
     settings: dict[str, Any], whole: Lived, run: Path
 ) -> None:
     """Two of the worlds also live as they did."""
-    assert digests(run) == whole.digests()
+    assert digests_of(run) == whole.digests()
     for name in ("passing", "strange"):
         if settings is WORLDS[name]:
             assert_lived_as_it_did(name, primordia.load(run))

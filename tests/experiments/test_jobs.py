@@ -16,9 +16,10 @@ from primordia.experiments.plan import Ending
 from primordia.runs import directory, loop
 from tests.commands import complains, here
 from tests.experiments.meadows import write
+from tests.worlds import digests_of
 
 
-def digests_of(experiment: Campaign) -> dict[str, list[str]]:
+def digests_of_arms(experiment: Campaign) -> dict[str, list[str]]:
     """Return the digests of the worlds of each arm."""
     told = primordia.load(experiment.path).info()
     assert told["jobs"] == {"done": len(experiment.jobs), "running": 0, "failed": 0, "waiting": 0}
@@ -26,26 +27,29 @@ def digests_of(experiment: Campaign) -> dict[str, list[str]]:
 
 
 @pytest.fixture(scope="module")
-def alone(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[str]]:
-    """Return the digests of each arm's worlds, each lived alone. Jobs have two worlds, or one."""
-    folder = tmp_path_factory.mktemp("alone")
+def apart(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[str]]:
+    """Return the digests of each arm's worlds, each lived beside another one than in its job.
+
+    Jobs have two worlds. Here runs have two worlds too, and the first begins one world earlier.
+    """
+    folder = tmp_path_factory.mktemp("apart")
     found: dict[str, list[str]] = {}
-    for arm in begin(write(folder), folder / "out").plan.arms:
-        for world in range(arm.config.seeds):
-            own = {"seed": arm.config.seed + world, "seeds": 1}
-            run = folder / f"{arm.name}-{world}"
+    for arm in begin(write(folder, seeds=4), folder / "out").plan.arms:
+        for first in (-1, 1, 3):
+            own = {"seed": arm.config.seed + first, "seeds": 2}
+            run = folder / f"{arm.name}-{first}"
             loop.start(arm.config.model_copy(update=own), run)
-            (told,) = primordia.load(run).info()["worlds"]
-            found.setdefault(arm.name, []).append(told["digest"])
+            found.setdefault(arm.name, []).extend(digests_of(run))
+        found[arm.name] = found[arm.name][1:-1]
     return found
 
 
-def test_what_a_kill_leaves_is_taken_up(tmp_path: Path, alone: dict[str, list[str]]) -> None:
+def test_what_a_kill_leaves_is_taken_up(tmp_path: Path, apart: dict[str, list[str]]) -> None:
     """A folder in which a run was about to begin, and a run in the middle of its life.
 
     The processes of the next test find the code of these jobs.
     """
-    chosen = begin(write(tmp_path), tmp_path / "out")
+    chosen = begin(write(tmp_path, seeds=4), tmp_path / "out")
     half = chosen.path / chosen.jobs[0].folder
     (half / "births").mkdir(parents=True)
     (half / "config.toml").write_text("begun")
@@ -55,13 +59,14 @@ def test_what_a_kill_leaves_is_taken_up(tmp_path: Path, alone: dict[str, list[st
     loop.start(part, chosen.path / chosen.jobs[1].folder)
     for job in chosen.jobs:
         assert jobs.ending_of(chosen.plan, job, chosen.path) == Ending(job.number, "done")
-    assert digests_of(begin(chosen.path)) == alone
+    assert digests_of_arms(begin(chosen.path)) == apart
 
 
-def test_an_experiment_is_run_once_on_all_cores_though_processes_die(
-    tmp_path: Path, alone: dict[str, list[str]], monkeypatch: pytest.MonkeyPatch
+def test_an_experiment_is_run_once_though_processes_die(
+    tmp_path: Path, apart: dict[str, list[str]], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Each of the first two processes is killed as soon as it is there, before it compiles anything."""
+    """Each of the first two processes is killed as soon as it is there, before it compiles anything.
+    The third one lives both jobs."""
     started, begun = on_cores.Here._started, []
 
     def dying(self: on_cores.Here) -> object:
@@ -73,13 +78,13 @@ def test_an_experiment_is_run_once_on_all_cores_though_processes_die(
 
     monkeypatch.setattr(on_cores.Here, "_started", dying)
     file, out = write(tmp_path, seeds=2), tmp_path / "out"
-    done = here("experiment", file, "--out", out, "--jobs", 2)
+    done = here("experiment", file, "--out", out, "--jobs", 1)
     assert done.returncode == 0, done.stderr
     assert done.stderr.count("the job's process ended with status -9") == 2
     assert done.stderr.count("the job is tried again") == 2
-    assert len(begun) == 4
+    assert len(begun) == 3
     assert done.stdout.splitlines()[-3:] == [f"{out}/results.{end}" for end in ("md", "csv", "png")]
-    assert digests_of(begin(out)) == {name: digests[:2] for name, digests in alone.items()}
+    assert digests_of_arms(begin(out)) == {name: digests[:2] for name, digests in apart.items()}
     rows = list(csv.DictReader((out / "results.csv").read_text().splitlines()))
     assert [(row["arm"], row["seed"]) for row in rows] == [
         (arm, str(seed)) for arm in ("mild", "harsh") for seed in (3, 4)
@@ -132,7 +137,7 @@ def test_a_fork_goes_on_from_the_worlds_of_an_arm(tmp_path: Path) -> None:
 
 
 def test_the_status_tells_what_is_done_without_opening_a_run(tmp_path: Path) -> None:
-    chosen = begin(write(tmp_path), tmp_path / "out")
+    chosen = begin(write(tmp_path, seeds=4), tmp_path / "out")
     for job in chosen.jobs[:3]:
         jobs.live(chosen.plan, job, chosen.path)
     arms = {arm["name"]: arm["worlds"] for arm in primordia.load(chosen.path).info()["arms"]}
@@ -140,7 +145,7 @@ def test_the_status_tells_what_is_done_without_opening_a_run(tmp_path: Path) -> 
         shutil.rmtree(path)
     told = begin(chosen.path).status()
     assert told.jobs == {"done": 3, "running": 0, "failed": 0, "waiting": 1}
-    assert [(arm.begun, arm.worlds) for arm in told.arms] == [(3, 3), (2, 3)]
+    assert [(arm.begun, arm.worlds) for arm in told.arms] == [(4, 4), (2, 4)]
     for arm in told.arms:
         lives = sorted(world["organism_ticks"] / world["deaths"] for world in arms[arm.name])
         assert arm.life == (lives[(len(lives) - 1) // 2] + lives[len(lives) // 2]) / 2
@@ -153,7 +158,6 @@ def test_the_status_tells_what_is_done_without_opening_a_run(tmp_path: Path) -> 
 
 
 def test_a_job_that_another_process_lives_is_left_to_it(tmp_path: Path) -> None:
-
     chosen = begin(write(tmp_path), tmp_path / "out")
     run = chosen.path / chosen.jobs[0].folder
     loop.start(jobs.configuration(chosen.plan, chosen.jobs[0]), run)

@@ -10,18 +10,14 @@ from pathlib import Path
 
 import pytest
 
-import primordia
 from primordia.experiments.campaign import begin
 from primordia.runs import loop
 from tests import commands
 from tests.experiments.meadows import write
+from tests.worlds import digests_of
 
 pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("_killed")]
 SETTINGS = {"stop": {"ticks": 200_000}, "seeds": 3, "jobs": {"worlds": 1}}
-
-
-def digests(place: Path) -> list[str]:
-    return [world["digest"] for world in primordia.load(place).info()["worlds"]]
 
 
 def processes_of(out: Path) -> list[int]:
@@ -79,4 +75,4 @@ def test_an_experiment_that_is_killed_five_times_has_the_same_worlds(
     assert kills == 5, f"only {kills} kills before the end"
     for arm in begin(out).plan.arms:
         loop.start(arm.config, tmp_path / "alone" / arm.name)
-        assert digests(out / arm.name) == digests(tmp_path / "alone" / arm.name)
+        assert digests_of(out / arm.name) == digests_of(tmp_path / "alone" / arm.name)

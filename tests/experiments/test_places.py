@@ -1,8 +1,10 @@
 """Jobs in processes of this machine or in tasks of a cluster: their options, and how they end."""
 
+import json
 import socket
 import subprocess
 import sys
+import threading
 from concurrent.futures import Future
 from pathlib import Path
 from types import SimpleNamespace
@@ -128,6 +130,33 @@ def test_each_process_is_stopped_and_those_that_take_too_long_are_killed(tmp_pat
     assert [each.kill.called for each in processes] == [False, True, False]
     assert place._live(JOB) == Ending(3, "stopped")
     assert place._workers == processes
+
+
+def test_two_jobs_run_at_once_each_in_a_process_of_its_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two processes live four jobs. A process answers when both were asked."""
+    both, begun = threading.Barrier(2, timeout=30), list[list[int]]()
+
+    def started(_: Here) -> Any:
+        begun.append(asked := [])
+        worker = MagicMock()
+        worker.poll.return_value = None
+        worker.stdin.write.side_effect = lambda text: asked.append(int(text))
+
+        def answer() -> str:
+            both.wait()
+            return json.dumps({"job": asked[-1], "state": "done"})
+
+        worker.stdout.readline.side_effect = answer
+        return worker
+
+    monkeypatch.setattr(Here, "_started", started)
+    place = Here(tmp_path, 2, 7.0)
+    endings = [place.submit(Job(number, "a", number, 1, f"a/{number}")) for number in range(4)]
+    assert [each.result() for each in endings] == [Ending(n, "done") for n in range(4)]
+    assert [len(asked) for asked in begun] == [2, 2]
+    place.stop()
 
 
 @pytest.fixture

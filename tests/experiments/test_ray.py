@@ -13,6 +13,7 @@ from primordia.experiments.status import CampaignStatus
 from primordia.runs import loop
 from tests.commands import complains, here
 from tests.experiments.meadows import write
+from tests.worlds import digests_of
 
 ray = pytest.importorskip("ray")
 pytestmark = [
@@ -22,15 +23,11 @@ pytestmark = [
 ]
 
 
-def digests(place: Path) -> list[str]:
-    return [world["digest"] for world in primordia.load(place).info()["worlds"]]
-
-
 def same_as_alone(out: Path) -> None:
     """Compare the worlds of an experiment with those of one run for each arm."""
     for arm in begin(out).plan.arms:
         loop.start(arm.config, out.parent / "alone" / arm.name)
-        assert digests(out / arm.name) == digests(out.parent / "alone" / arm.name)
+        assert digests_of(out / arm.name) == digests_of(out.parent / "alone" / arm.name)
 
 
 @pytest.mark.slow

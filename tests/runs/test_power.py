@@ -14,12 +14,11 @@ import pytest
 import primordia
 from primordia import files
 from primordia.errors import InputError
-from primordia.history.info import info
 from primordia.runs import bundle, checkpoint, directory, loop, recorder
 from primordia.runs.archive import Archive
 from primordia.runs.arrays import world_ticks
 from tests.disk import Disk, Instant
-from tests.worlds import MILLS, config
+from tests.worlds import MILLS, config, digests_of
 
 HALF, TICKS = 150, 300
 SETTINGS: dict[str, Any] = {**MILLS, "stop": {"ticks": HALF}}
@@ -37,10 +36,6 @@ class Recorded:
     def safe_ticks(self, operations: int) -> int:
         """Return the ticks of the newest checkpoint that this number of operations had saved."""
         return max((ticks for number, ticks in self.saved if number <= operations), default=-1)
-
-
-def digests(run: Path) -> list[str]:
-    return [world["digest"] for world in info(Archive(run))["worlds"]]
 
 
 @pytest.fixture(scope="module")
@@ -70,7 +65,7 @@ def recorded(folder: Path, kind: str) -> Recorded:
             loop.start(settings, run, checkpoint_every=0.0)
         loop.resume(run, {"ticks": TICKS}, checkpoint_every=0.0)
     assert len(saved) > 5
-    return Recorded(disk, saved, digests(run))
+    return Recorded(disk, saved, digests_of(run))
 
 
 def noting(save: Any, disk: Disk, saved: list[tuple[int, int]]) -> Any:
@@ -102,7 +97,7 @@ def assert_goes_on(lived: Recorded, cut: int, how: str, folder: Path) -> None:
         assert Archive(run).ends.min() >= safe
     with suppress(InputError) if safe < 0 else nullcontext():  # nothing was promised yet
         loop.resume(run, {"ticks": TICKS})
-        assert digests(run) == lived.digests
+        assert digests_of(run) == lived.digests
     shutil.rmtree(folder, ignore_errors=True)
 
 
@@ -139,7 +134,7 @@ def test_a_run_that_was_unpacked_is_whole_under_its_name(tmp_path: Path) -> None
         for how in ("forgets", "names", f"chooses {number}"):
             disk.left(instant, folder := tmp_path / f"{number} {how}", how)
             if (left := folder / "run").exists():
-                assert digests(left) == digests(tmp_path / "run")
+                assert digests_of(left) == digests_of(tmp_path / "run")
                 assert Archive(left).versions == Archive(tmp_path / "run").versions
     assert (folder / "run").exists()
     disk.close()
