@@ -36,6 +36,13 @@ def environment() -> dict[str, str]:
     return {**os.environ, "PYTHONPATH": TREE}
 
 
+def hostile(folder: Path) -> None:
+    """Fill a folder with files named as modules that a command imports."""
+    names = "numpy", "click", "jax", "tomllib", "platformdirs", "libtpu", "sitecustomize", "mmap"
+    for name in names:
+        (folder / f"{name}.py").write_text("raise SystemExit('from the current folder')\n")
+
+
 def begin(*words: object, session: bool = False) -> subprocess.Popen[str]:
     """Start a command in another process, if asked in a session of its own, and return while it runs."""
     pipes: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}

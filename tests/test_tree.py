@@ -29,8 +29,10 @@ def test_processes_import_this_tree_from_any_folder(tmp_path: Path) -> None:
 
 
 def test_workers_import_this_tree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """They import the simulators of the tests too, which no installed package has."""
+    """They import the simulators of the tests too, which no installed package has, and no file of the
+    current folder."""
     monkeypatch.chdir(tmp_path)
+    commands.hostile(tmp_path)
     pool = pools.Workers(
         "tests.counters:Place", {"source": str(SOURCE)}, {"same": ("bool", ())}, 1, 1
     )

@@ -17,14 +17,14 @@ from primordia import own_code
 from primordia.errors import InputError
 from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs.archive import Archive
-from tests.commands import COMMAND, complains, environment, here, watched
+from tests.commands import COMMAND, complains, environment, here, hostile, watched
 from tests.strangers import PARTS, POND, begun, forget
 from tests.worlds import HOSTED, config
 
 SIMULATED: dict[str, Any] = {
     "task": "pond",
     **HOSTED,
-    "habitat": {"name": "gymnasium", "env": "tests.ponds:Pond-v0", "workers": 1},
+    "habitat": {"name": "gymnasium", "env": "tests.ponds:Pond-v0", "workers": 0},
 }
 
 
@@ -61,15 +61,8 @@ def test_a_run_does_not_go_on_with_changed_code(folder: Path) -> None:
 LOCALE = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
 
 
-def hostile(folder: Path) -> None:
-    """Fill a folder with files named as modules that a command imports."""
-    names = "numpy", "click", "jax", "tomllib", "platformdirs", "libtpu", "sitecustomize", "mmap"
-    for name in names:
-        (folder / f"{name}.py").write_text("raise SystemExit('from the current folder')\n")
-
-
 def test_a_command_lives_in_any_folder_and_locale_and_with_closed_streams(tmp_path: Path) -> None:
-    """No file of the folder is imported, nor by a process of simulators, as the pond has one.
+    """No file of the folder is imported; `test_tree.py` has a process of simulators in such a folder.
 
     Standard input and the stream of messages are closed, and no file takes their place.
     """

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from primordia.errors import InputError
-from primordia.law.world import Cause
-from primordia.runs.lives import ALIVE, Lives, joined
-from tests.synthetic import world_of, worlds_of
+from primordia.runs.lives import ALIVE, Lives
+from tests.synthetic import worlds_of
 
 FIRST = [(0, 9, True), (0, 19, True), (5, 14, True), (10, 0, True), (20, 50, False), (21, 3, True)]
 SECOND = [(0, 19, True), (20, 9, True), (30, 0, False)]
@@ -88,20 +87,13 @@ def test_the_lives_of_one_world_are_taken_alone(lives: Lives) -> None:
     assert lives.rank.tolist() == [*range(6), *range(3)]
 
 
-def test_the_oldest_and_the_champions_leave_out_worlds_without_a_birth(lives: Lives) -> None:
-    """Late in the first world are rows 3, 4 and 5, in the last one rows 7 and 8."""
-    assert np.flatnonzero(lives.late()).tolist() == [3, 4, 5, 7, 8]
-    assert lives.lifespan[[3, 4, 5, 7, 8]].tolist() == [1, 20, 4, 10, 10]
-    assert (lives.oldest(), lives.oldest(0), lives.oldest(2)) == (4, 4, 8)
-    assert lives.champions().tolist() == [4, 8]
-    assert (lives.oldest(0, after=0.0), lives.oldest(after=0.0)) == (4, 6), (
-        "the last-born of equals"
-    )
-    assert lives.oldest(2, after=0.0) == 6
-    with pytest.raises(InputError, match=r"^nothing was born in world 1$"):
-        lives.oldest(1)
-    with pytest.raises(InputError, match=r"^there is no world 3; the worlds are 0 to 2$"):
-        lives.oldest(3)
+@pytest.mark.parametrize(
+    ("world", "says"),
+    [(1, "nothing was born in world 1"), (3, "there is no world 3; the worlds are 0 to 2")],
+)
+def test_a_world_without_a_birth_has_no_oldest(lives: Lives, world: int, says: str) -> None:
+    with pytest.raises(InputError, match=f"^{says}$"):
+        lives.oldest(world)
 
 
 def test_an_organism_is_found_in_its_own_world(lives: Lives) -> None:
@@ -111,13 +103,3 @@ def test_an_organism_is_found_in_its_own_world(lives: Lives) -> None:
             lives.row(number, world)
     wanted = np.array([2, 0, 2, 1, 0, 5]), np.array([2, 5, 3, 0, -1, 0])
     assert lives.rows_of(*wanted).tolist() == [8, 5, -1, -1, -1, -1]
-
-
-def test_lives_of_two_runs_are_joined_and_worlds_of_the_second_renumbered(lives: Lives) -> None:
-    one = world_of(FIRST, UNTIL)
-    both = joined([lives, one], np.array([0, 3]))
-    assert both.world.tolist() == [*lives.world.tolist(), *[3] * 6]
-    assert both.world.dtype == np.int32
-    assert both.born.tolist() == [*lives.born.tolist(), *one.born.tolist()]
-    assert both.worlds == 4
-    assert Cause.FATAL in both.cause

@@ -27,7 +27,8 @@ def test_a_run_begins_in_a_folder_with_at_most_a_lock(tmp_path: Path) -> None:
         directory.refuse_if_taken(tmp_path)
 
 
-def test_a_lock_is_seen_while_it_is_held(tmp_path: Path) -> None:
+def test_a_lock_is_seen_while_it_is_held(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A writer that comes at the moment of a look waits for its end."""
     assert not directory.is_written(tmp_path)
     with directory.locked(tmp_path):
         assert directory.is_written(tmp_path)
@@ -35,6 +36,9 @@ def test_a_lock_is_seen_while_it_is_held(tmp_path: Path) -> None:
     with (tmp_path / "lock").open("rb") as other_reader:
         fcntl.flock(other_reader, fcntl.LOCK_SH)
         assert not directory.is_written(tmp_path), "another reader is no writer"
+        monkeypatch.setattr("time.sleep", lambda _: fcntl.flock(other_reader, fcntl.LOCK_UN))
+        with directory.locked(tmp_path):
+            assert directory.is_written(tmp_path)
 
 
 STARTED = (

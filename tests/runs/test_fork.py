@@ -84,7 +84,7 @@ def test_a_fork_starts_from_a_checkpoint_or_lives_the_past_again(
     assert same(mill, kept)
 
 
-def test_figures_of_a_fork_begin_at_the_fork(mill: Path, tmp_path: Path) -> None:
+def test_numbers_of_a_fork_begin_at_the_fork(mill: Path, tmp_path: Path) -> None:
     """Deaths, ages and food since the fork are those of the run that it is a fork of."""
     at = 300
     forked = primordia.load(mill).fork(at, tmp_path / "fork")
@@ -103,10 +103,6 @@ def test_figures_of_a_fork_begin_at_the_fork(mill: Path, tmp_path: Path) -> None
         for one, other in zip(after[world], before[world], strict=True):
             np.testing.assert_array_equal(one, other[sampled])
     assert foraging(fork).first_tick == at
-    forked.plot(tmp_path, figures=["ages", "survival", "population", "foraging"])
-    for name in ("ages", "survival", "population"):
-        assert "since the fork" in (tmp_path / f"{name}.svg").read_text(encoding="utf-8")
-    assert (tmp_path / "foraging.svg").exists()
 
 
 @pytest.mark.slow

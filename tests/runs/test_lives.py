@@ -164,39 +164,33 @@ def few_lives_of(
 
 
 @pytest.mark.parametrize(
-    ("row", "values", "fault"),
+    ("table", "row", "values", "fault"),
     [
-        (1, {"world": 2}, "an organism lives in a world that does not exist"),
-        (4, {"cell": CELLS}, "organism 3 lives in a cell that does not exist"),
-        (4, {"cell": -1}, "organism 3 lives in a cell that does not exist"),
-        (1, {"id": -1, "parent": -2}, "organism -1 has a birth number below 0"),
-        (0, {"tick": -1}, "organism 0 is born before the first tick, or after the last"),
-        (3, {"tick": 31}, "organism 2 is born before the first tick, or after the last"),
-        (4, {"tick": 51}, "organism 3 is born before the first tick, or after the last"),
-        (4, {"parent": 3}, "organism 3 is not younger than its parent"),
-        (4, {"parent": None}, "organism 3 has no parent and is no founder"),
-        (4, {"id": 1, "parent": 0}, "organism 1 is not recorded in order of birth"),
-        (3, {"cause": "tired"}, "'tired' is not a cause"),
+        ("births", 1, {"world": 2}, "an organism lives in a world that does not exist"),
+        ("births", 4, {"cell": CELLS}, "organism 3 lives in a cell that does not exist"),
+        ("births", 4, {"cell": -1}, "organism 3 lives in a cell that does not exist"),
+        ("births", 1, {"id": -1, "parent": -2}, "organism -1 has a birth number below 0"),
+        ("births", 0, {"tick": -1}, "organism 0 is born before the first tick, or after the last"),
+        ("births", 3, {"tick": 31}, "organism 2 is born before the first tick, or after the last"),
+        ("births", 4, {"tick": 51}, "organism 3 is born before the first tick, or after the last"),
+        ("births", 4, {"parent": 3}, "organism 3 is not younger than its parent"),
+        ("births", 4, {"parent": None}, "organism 3 has no parent and is no founder"),
+        ("births", 4, {"id": 1, "parent": 0}, "organism 1 is not recorded in order of birth"),
+        ("births", 3, {"cause": "tired"}, "'tired' is not a cause"),
+        ("deaths", 1, {"world": -1}, "an organism lives in a world that does not exist"),
+        ("deaths", 1, {"id": 3}, "organism 3 dies without having been born"),
+        ("deaths", 0, {"id": 2}, "organism 2 dies without having been born"),
+        ("deaths", 0, {"tick": 9}, "organism 1 dies before its birth, or after the last tick"),
+        ("deaths", 1, {"tick": 31}, "organism 0 dies before its birth, or after the last tick"),
     ],
 )
-def test_an_impossible_birth_is_named(row: int, values: dict[str, Any], fault: str) -> None:
+def test_an_impossible_birth_or_death_is_named(
+    table: str, row: int, values: dict[str, Any], fault: str
+) -> None:
+    tables = {"births": BIRTHS, "deaths": DEATHS}
+    tables[table] = changed(tables[table], row, **values)
     with pytest.raises(ValueError, match=f"^{fault}$"):
-        few_lives_of(changed(BIRTHS, row, **values), DEATHS)
-
-
-@pytest.mark.parametrize(
-    ("row", "values", "fault"),
-    [
-        (1, {"world": -1}, "an organism lives in a world that does not exist"),
-        (1, {"id": 3}, "organism 3 dies without having been born"),
-        (0, {"id": 2}, "organism 2 dies without having been born"),
-        (0, {"tick": 9}, "organism 1 dies before its birth, or after the last tick"),
-        (1, {"tick": 31}, "organism 0 dies before its birth, or after the last tick"),
-    ],
-)
-def test_an_impossible_death_is_named(row: int, values: dict[str, Any], fault: str) -> None:
-    with pytest.raises(ValueError, match=f"^{fault}$"):
-        few_lives_of(BIRTHS, changed(DEATHS, row, **values))
+        few_lives_of(tables["births"], tables["deaths"])
 
 
 def test_the_first_and_the_last_tick_and_cell_are_possible() -> None:

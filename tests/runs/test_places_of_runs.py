@@ -127,6 +127,7 @@ def test_an_arm_has_the_versions_damage_rows_and_lives_of_all_its_runs() -> None
     assert (
         several.table("births")["world"].to_pylist() == several.lives.world.tolist() == [*range(6)]
     )
+    assert several.lives.world.dtype == np.int32
     found = [run_of(several, world) for world in range(6)]
     assert [run.path.name for run, _ in found] == ["a", "a", "b", "b", "b", "c"]
     assert [world for _, world in found] == [0, 1, 0, 1, 2, 0]

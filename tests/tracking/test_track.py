@@ -1,6 +1,5 @@
 """Dashboards show the rows of metrics, each once, however often and however long they are written."""
 
-import fcntl
 import shutil
 import signal
 import socket
@@ -130,18 +129,6 @@ def test_following_ends_when_the_run_has_stopped(run: Path, tmp_path: Path) -> N
     charts(tmp_path, path)
     done = here("track", path, "--tensorboard", tmp_path, "--follow", "--every", "999")
     assert done.returncode == 0, done.stderr
-
-
-def test_a_look_at_the_lock_refuses_no_writer(run: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A writer that comes at the moment of a look waits for its end."""
-    assert not directory.is_written(run)
-    with directory.locked(run):
-        assert directory.is_written(run)
-    with (run / directory.LOCK).open() as looked_at:
-        fcntl.flock(looked_at, fcntl.LOCK_SH)
-        monkeypatch.setattr("time.sleep", lambda seconds: fcntl.flock(looked_at, fcntl.LOCK_UN))
-        with directory.locked(run):
-            assert directory.is_written(run)
 
 
 def test_a_run_without_a_whole_checkpoint_is_waited_for(run: Path, tmp_path: Path) -> None:
