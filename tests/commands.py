@@ -89,6 +89,23 @@ def well_formed(*words: str) -> Config | None:
     return config.load(task, {**context.obj, "stop": take_limits(context.params)})
 
 
+class Failing(io.RawIOBase):
+    """A stream that fails from its n-th byte on, as a pipe that is closed or a disk that is full."""
+
+    def __init__(self, error: int, after: int) -> None:
+        """`error`: a number of errno."""
+        self.error, self.left = error, after
+
+    def writable(self) -> bool:
+        return True
+
+    def write(self, data: Any) -> int:
+        self.left -= len(data)
+        if self.left < 0:
+            raise OSError(self.error, os.strerror(self.error))
+        return len(data)
+
+
 def complains(done: subprocess.CompletedProcess[str], status: int, *parts: str) -> None:
     """Assert that a command failed with this status and one clear line on stderr, with these parts."""
     assert done.returncode == status, done.stderr + done.stdout

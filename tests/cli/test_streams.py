@@ -1,4 +1,4 @@
-"""Standard streams: their names, errors when they cannot be written, and messages."""
+"""Standard streams: names, errors when they cannot be written, messages, and the bar of progress."""
 
 import errno
 import io
@@ -11,45 +11,37 @@ from typing import Any
 
 import pytest
 
+from primordia import progress
+from primordia.cli import waiting
 from primordia.cli.streams import LONGEST, Printable, flush, prepare, report
+from tests.commands import Failing
 
-
-class Full(io.RawIOBase):
-    """A file that cannot be written because of `error`, a number of errno; 0: it can be written."""
-
-    error = 0
-
-    def writable(self) -> bool:
-        return True
-
-    def write(self, data: Any) -> int:
-        if self.error:
-            raise OSError(self.error, os.strerror(self.error))
-        return len(data)
+ENOUGH = 10**9
+"""More bytes than a test writes."""
 
 
 @pytest.fixture
-def file() -> Iterator[Full]:
-    """Return a file that cannot be written until the test ends."""
-    yield (full := Full())
-    full.error = 0  # Python writes the rest when it closes the stream
+def file() -> Iterator[Failing]:
+    """Return a file that can be written, unless a test lets it fail."""
+    yield (file := Failing(0, ENOUGH))
+    file.left = ENOUGH  # Python writes the rest when it closes the stream
 
 
-def say(file: Full, text: str) -> None:
+def say(file: Failing, text: str) -> None:
     stream = Printable(io.BufferedWriter(file, 16), "utf-8", write_through=True)
     stream.write(text)
     stream.flush()
 
 
 @pytest.mark.parametrize(("text", "error"), [("short", errno.ENOSPC), ("long" * 100, errno.EPIPE)])
-def test_a_stream_that_cannot_be_written_is_named(file: Full, text: str, error: int) -> None:
-    file.error = error
+def test_a_stream_that_cannot_be_written_is_named(file: Failing, text: str, error: int) -> None:
+    file.error, file.left = error, 0
     with pytest.raises(OSError, match=os.strerror(error)) as caught:
         say(file, text)
     assert (caught.value.errno, caught.value.filename) == (error, "standard output")
 
 
-def test_a_stream_counts_the_characters_that_it_was_given(file: Full) -> None:
+def test_a_stream_counts_the_characters_that_it_was_given(file: Failing) -> None:
     stream = Printable(io.BufferedWriter(file, 16), "utf-8")
     assert [stream.write(text) for text in ("", "one", "\x1b[2J")] == [0, 3, 4]
 
@@ -96,3 +88,23 @@ def test_standard_streams_have_names_and_errors_are_shown_at_once(
     assert [(each.fileno(), each.title, each.line_buffering) for each in streams] == [
         (1, "standard output", os.isatty(1)), (2, "standard error", True),
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize(("patience", "drawn"), [(-1, True), (1e6, False)])
+def test_a_bar_tells_what_long_work_does_until_there_is_output(
+    patience: float, drawn: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(terminal := io.StringIO(), "isatty", lambda: True)
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setattr(sys, "__stderr__", terminal)
+    monkeypatch.setattr(waiting, "PATIENCE", patience)
+    out = Printable(io.BytesIO(), "utf-8")
+    with waiting.bar() as shown:
+        progress.tell("counting stars", 0.25)
+        shown.refresh()
+        assert ("counting stars" in terminal.getvalue()) == drawn
+        out.write("a result")
+        ended = len(terminal.getvalue())
+        progress.tell("counting sand", 0.5)
+        shown.refresh()
+    assert "counting" not in terminal.getvalue()[ended:]

@@ -3,14 +3,12 @@
 import errno
 import io
 import json
-import os
 import subprocess
 import sys
 from contextlib import chdir, redirect_stderr, redirect_stdout, suppress
 from functools import partial
 from itertools import count
 from pathlib import Path
-from typing import Any
 from unittest.mock import patch
 
 import pytest
@@ -25,7 +23,7 @@ from primordia.cli.commands import execute
 from primordia.cli.streams import Printable
 from primordia.errors import InputError
 from primordia.printable import counted, often, printable
-from tests.commands import complains, environment, here
+from tests.commands import Failing, complains, environment, here
 from tests.plays import settings_of
 from tests.trouble import SMALL, TASK, TICKS, goes_on
 
@@ -181,22 +179,6 @@ def test_a_command_first_opens_what_is_closed(monkeypatch: pytest.MonkeyPatch) -
     with pytest.raises(SystemExit):
         cli.main()
     assert called == ["open_streams", "end_commands_at_once", "prepare", "execute"]
-
-
-class Failing(io.RawIOBase):
-    """A stream that fails from its n-th byte on, as a pipe that is closed or a disk that is full."""
-
-    def __init__(self, error: int, after: int) -> None:
-        self._error, self._left = error, after
-
-    def writable(self) -> bool:
-        return True
-
-    def write(self, data: Any) -> int:
-        self._left -= len(data)
-        if self._left < 0:
-            raise OSError(self._error, os.strerror(self._error))
-        return len(data)
 
 
 def executed(error: int, after: int, *words: object) -> tuple[int, str]:
