@@ -5,9 +5,10 @@ from collections.abc import Callable
 import numpy as np
 from hypothesis import strategies as st
 
-from primordia.law.world import BirthCause, Cause
+from primordia.law.world import BirthCause
 from primordia.random.trials import words
-from primordia.runs.lives import ALIVE, Lives
+from primordia.runs.lives import Lives
+from tests.synthetic import one_world
 
 FEW = st.lists(st.integers(0, 30), max_size=3)
 HISTORY = st.lists(st.tuples(FEW, FEW), max_size=30)
@@ -100,16 +101,6 @@ def moran(
 
 def lives_of(parent: list[int], born: list[int], ended: list[int], died: list[bool]) -> Lives:
     """Return the lives of one world by the rows of parents; all that have one are mutants."""
-    count, of = len(parent), np.array(parent, np.int64)
-    return Lives(
-        world=np.zeros(count, np.int32),
-        id=np.arange(count),
-        parent=of,
-        cell=np.zeros(count, np.int32),
-        birth_cause=np.where(of < 0, BirthCause.FOUNDER, BirthCause.MUTANT).astype(np.int8),
-        born=np.array(born, np.int64),
-        seen=np.array(born, np.int64),
-        inherited=np.zeros(count, bool),
-        ended=np.array(ended, np.int64),
-        cause=np.where(died, Cause.FATAL, ALIVE).astype(np.int8),
-    )
+    cause = np.where(np.array(parent) < 0, BirthCause.FOUNDER, BirthCause.MUTANT).astype(np.int8)
+    cell = np.zeros(len(parent), np.int32)
+    return one_world(born, ended, died, parent, cell=cell, birth_cause=cause)

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from primordia.law.world import BirthCause, Cause
-from primordia.runs.lives import ALIVE, Lives
+from primordia.law.world import BirthCause
+from primordia.runs.lives import Lives
+from tests.synthetic import one_world
 
 FOUNDER, COPY, MUTANT = BirthCause
 
@@ -13,19 +14,7 @@ def lives(*rows: tuple[int, BirthCause, int] | tuple[int, BirthCause, int, str])
 
     Organisms are born one a tick, in the order of the rows.
     """
-    count = len(rows)
-    number = np.arange(count)
-    lifespan = np.array([row[2] for row in rows])
-    alive = np.array([len(row) == 4 for row in rows])
-    return Lives(
-        world=np.zeros(count, np.int32),
-        id=number,
-        parent=np.array([row[0] for row in rows]),
-        cell=number.astype(np.int32),
-        birth_cause=np.array([row[1] for row in rows], np.int8),
-        born=number,
-        seen=number,
-        inherited=np.zeros(count, bool),
-        ended=number + lifespan,
-        cause=np.where(alive, ALIVE, Cause.FATAL).astype(np.int8),
-    )
+    number = np.arange(len(rows))
+    parent, birth, lifespan = (np.array([row[at] for row in rows]) for at in range(3))
+    died = [len(row) == 3 for row in rows]
+    return one_world(number, number + lifespan, died, parent, birth_cause=birth.astype(np.int8))

@@ -12,11 +12,11 @@ from matplotlib.figure import Figure
 from matplotlib.text import Annotation
 
 from primordia.figures import spacetime, style
-from primordia.law.world import BirthCause, Cause
+from primordia.law.world import BirthCause
 from primordia.phylogeny.clades import Clades, clades_of
-from primordia.runs.lives import ALIVE, Lives
+from primordia.runs.lives import Lives
 from tests.figures.reading import axes_of, key, labels, run_of
-from tests.synthetic import occupants, world_of, worlds_of
+from tests.synthetic import occupants, one_world, world_of, worlds_of
 
 CELLS, LAST = 8, 400
 
@@ -41,20 +41,10 @@ def a_history(seed: int) -> Lives:
         for cell in deaths.get(tick, by_chance):
             ended[living.pop(cell)] = tick
     ticks, parents, cells = map(np.array, zip(*born, strict=True))
-    rows = np.arange(len(born))
-    died = np.isin(rows, [*ended])
-    return Lives(
-        world=np.zeros(len(rows), np.int32),
-        id=rows,
-        parent=parents,
-        cell=cells.astype(np.int32),
-        birth_cause=np.where(parents < 0, BirthCause.FOUNDER, BirthCause.COPY).astype(np.int8),
-        born=ticks,
-        seen=ticks,
-        inherited=np.zeros(len(rows), bool),
-        ended=np.array([ended.get(row, LAST) for row in rows.tolist()]),
-        cause=np.where(died, Cause.FATAL, ALIVE).astype(np.int8),
-    )
+    ends = [ended.get(row, LAST) for row in range(len(born))]
+    died = [row in ended for row in range(len(born))]
+    cause = np.where(parents < 0, BirthCause.FOUNDER, BirthCause.COPY).astype(np.int8)
+    return one_world(ticks, ends, died, parents, cell=cells.astype(np.int32), birth_cause=cause)
 
 
 def expected_inks(

@@ -1,6 +1,5 @@
 """Extinctions of founders that never rose, and crashes after a rise, counted again tick by tick."""
 
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -9,15 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-import primordia
 from primordia.history import extinctions as module
-from primordia.history.extinctions import Extinctions, extinctions
-from primordia.law.world import Cause
-from primordia.runs import loop
-from primordia.runs.lives import ALIVE, Lives, joined
-from tests.commands import here
-from tests.synthetic import world_of
-from tests.worlds import HERD, config
+from primordia.history.extinctions import extinctions
+from primordia.runs.lives import Lives, joined
+from tests.synthetic import one_world, world_of
 
 CELLS = 8
 COHORT = st.tuples(
@@ -42,20 +36,8 @@ def lived(cohorts: list) -> tuple[Lives, list[bool]]:
         rose.append(2 * most >= CELLS)
         start += ticks
     born, ended, parent = (np.array(column) for column in zip(*rows, strict=True))
-    last = ended == start
-    number = np.arange(len(rows))
-    world = Lives(
-        world=np.zeros(len(rows), np.int32),
-        id=number,
-        parent=parent,
-        cell=(number % CELLS).astype(np.int32),
-        birth_cause=np.zeros(len(rows), np.int8),
-        born=born,
-        seen=born,
-        inherited=np.zeros(len(born), bool),
-        ended=ended,
-        cause=np.where(last, ALIVE, Cause.FATAL).astype(np.int8),
-    )
+    cell = (np.arange(len(rows)) % CELLS).astype(np.int32)
+    world = one_world(born, ended, ended != start, parent, cell=cell)
     return world, rose[:-1]
 
 
@@ -123,33 +105,3 @@ def test_crashes_are_those_of_their_own_worlds() -> None:
         assert found.total.tolist() == [0, 3, 3, 0, 3]
         assert found.crashes.tolist() == [0, 2, 0, 0, 2]
     assert module.extinctions_of(worlds_with([5, 6], [5, 6], None)).crashes.tolist() == [0, 0]
-
-
-def test_crashes_of_a_run_are_those_of_its_tables(tmp_path: Path) -> None:
-    """The worlds die out often, some of them after a rise."""
-    settings = {**HERD, "replication": 0.3, "hazard": 0.15, "stop": {"ticks": 1500}}
-    loop.start(config(settings), tmp_path / "run")
-    run = primordia.load(tmp_path / "run")
-    born, died = (run.table(name).to_pylist() for name in ("births", "deaths"))
-    seen = Extinctions(*(np.zeros(3, np.int64) for _ in range(2)))
-    for number, world in enumerate(run.info()["worlds"]):
-        children = {
-            row["id"] for row in born if row["world"] == number and row["parent"] is not None
-        }
-        changes: dict[int, int] = {}
-        for rows, by in ((born, 1), (died, -1)):
-            for row in rows:
-                if row["world"] == number and row["id"] in children:
-                    changes[row["tick"]] = changes.get(row["tick"], 0) + by
-        starts = {row["tick"] for row in born if row["world"] == number} - {0}
-        starts &= {row["tick"] for row in born if row["world"] == number and row["parent"] is None}
-        alive = most = crashes = 0
-        for tick in range(world["ticks"] + 1):
-            alive += changes.get(tick, 0)
-            if tick in starts:
-                crashes, most = crashes + (2 * most >= HERD["cells"]), 0
-            most = max(most, alive)
-        assert (world["extinctions"], world["crashes"]) == (len(starts), crashes)
-        seen.total[number], seen.crashes[number] = len(starts), crashes
-    assert 0 < seen.crashes.sum() < seen.total.sum()
-    assert "times after half of the cells were full" in here("info", run.path).stdout

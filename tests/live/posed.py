@@ -15,6 +15,7 @@ from primordia.law.events import BIRTHS, DEATHS, Rows
 from primordia.law.placement import Placement
 from primordia.law.world import Cause, Organisms, World, Worlds
 from primordia.live.census import Census
+from primordia.live.paint import Cells
 from primordia.live.terminal import Keyboard
 from primordia.live.view import View
 from primordia.random.wide import Wide, wide
@@ -44,6 +45,11 @@ def posed(alive: list[list[int]], born: list[list[int]], tick: list[int], **more
     history |= {"tick": wide(tick), "calm": np.array(more.get("calm", [0] * worlds), np.int32)}
     history |= {name: wide(values) for name, values in columns.items()}
     return World(Organisms(**organisms), Worlds(**history))
+
+
+def old(count: int) -> Cells:
+    """Return old cells, each of its own line."""
+    return Cells(np.arange(count), np.ones(count))
 
 
 def law(

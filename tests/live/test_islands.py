@@ -14,24 +14,18 @@ from primordia.live.borders import ruler
 from primordia.live.census import Census
 from primordia.live.companion import Companion
 from primordia.live.forms import Ring, Room, Torus, form_of
-from primordia.live.paint import Cells
 from primordia.live.panel import Outlook, numbers
 from primordia.runs.loop import Status
 from primordia.settings.islands import Islands
 from tests.engine.test_islands import WHEELS
 from tests.live.drawn import text
-from tests.live.posed import law, look_alive, posed, view
+from tests.live.posed import law, look_alive, old, posed, view
 from tests.toys import Mill, Watch
 from tests.worlds import config
 
 SHORE = Islands(("dune", "marsh"), (0, 3, 8))
 BAYS = Islands(("dune", "marsh", "sea"), (0, 4, 12, 16))
 """A torus of four columns, with a row, two rows and a row."""
-
-
-def old(count: int) -> Cells:
-    """Return old cells, each of its own line."""
-    return Cells(np.arange(count), np.ones(count))
 
 
 def test_a_row_below_a_ring_names_its_islands() -> None:

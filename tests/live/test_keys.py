@@ -186,13 +186,22 @@ def digests(run: Path) -> list[str]:
     return [world["digest"] for world in primordia.load(run).info()["worlds"]]
 
 
-def test_a_run_is_the_same_whatever_keys_are_pressed(tmp_path: Path) -> None:
-    keys = "o n n ws s s -+ w ? ? on s w o =++"
-    assert watch(keys, tmp_path / "keys") == watch("", tmp_path / "none")
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+    """Return the digests of the run if no key is pressed."""
+    return watch("", tmp_path_factory.mktemp("keys") / "none")
 
 
-def test_q_writes_a_checkpoint_from_which_the_run_goes_on(tmp_path: Path) -> None:
+def test_a_run_is_the_same_whatever_keys_are_pressed(
+    undisturbed: list[str], tmp_path: Path
+) -> None:
+    assert watch("o n n ws s s -+ w ? ? on s w o =++", tmp_path / "keys") == undisturbed
+
+
+def test_q_writes_a_checkpoint_from_which_the_run_goes_on(
+    undisturbed: list[str], tmp_path: Path
+) -> None:
     with pytest.raises(KeyboardInterrupt):
         watch(" ssq", tmp_path / "keys")
     loop.resume(tmp_path / "keys")
-    assert digests(tmp_path / "keys") == watch("", tmp_path / "none")
+    assert digests(tmp_path / "keys") == undisturbed

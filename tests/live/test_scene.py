@@ -12,13 +12,7 @@ from primordia.live.scene import Grid, Stage, cells_of
 from primordia.phylogeny.clades import Lines
 from primordia.random.wide import wide
 from tests.live.drawn import text
-from tests.live.posed import law, posed
-
-
-def old(count: int) -> Cells:
-    """Return old cells, each of its own line."""
-    return Cells(np.arange(count), np.ones(count))
-
+from tests.live.posed import law, old, posed
 
 # Forms.
 

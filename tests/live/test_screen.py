@@ -22,6 +22,11 @@ def meadow(**settings: Any) -> Engine:
     return made
 
 
+@pytest.fixture(scope="module")
+def torus() -> Engine:
+    return meadow(cells=1024, placement={"topology": "torus8"})
+
+
 def screen(made: Engine, keys: str, width: int, height: int) -> list[str]:
     """Return the rows of the screen after some keys."""
     console = terminal(width, height)
@@ -32,11 +37,9 @@ def screen(made: Engine, keys: str, width: int, height: int) -> list[str]:
     return [row[:width] for row in text(view._rows(status))]  # as a frame cuts them
 
 
-@pytest.mark.parametrize(
-    "settings", [{"cells": 1024, "placement": {"topology": "torus8"}}, {"cells": 2}], ids=str
-)
-def test_screens_are_filled_and_not_overfilled(settings: dict[str, Any]) -> None:
-    made = meadow(**settings)
+@pytest.mark.parametrize("cells", [1024, 2])
+def test_screens_are_filled_and_not_overfilled(torus: Engine, cells: int) -> None:
+    made = torus if cells == 1024 else meadow(cells=cells)
     for width, height in ((120, 40), (80, 24), (60, 15)):
         for keys in ("", "o", "w", "wo", "?"):
             rows = screen(made, keys, width, height)
@@ -44,20 +47,18 @@ def test_screens_are_filled_and_not_overfilled(settings: dict[str, Any]) -> None
             assert rows[-1].startswith("space"), "the keys are the last row"
             assert "tick" in "".join(rows)
             blank = sum(not row.strip() for row in rows)
-            assert blank <= height // 2 or settings["cells"] == 2
+            assert blank <= height // 2 or cells == 2
 
 
-def test_a_torus_of_1024_cells_is_whole_and_large() -> None:
-    made = meadow(cells=1024, placement={"topology": "torus8"})
-
+def test_a_torus_of_1024_cells_is_whole_and_large(torus: Engine) -> None:
     def blocks(width: int, height: int) -> tuple[int, int]:
-        rows = [row.split(" ")[0] for row in screen(made, "", width, height)]
+        rows = [row.split(" ")[0] for row in screen(torus, "", width, height)]
         drawn = [row for row in rows if row.startswith("▀")]
         return len(drawn[0]), len(drawn)
 
     assert blocks(120, 40) == (64, 32)
     assert blocks(80, 24) == (32, 16)
-    assert "shown: 20 x 32 of 32 x 32 cells" in "\n".join(screen(made, "", 60, 15))
+    assert "shown: 20 x 32 of 32 x 32 cells" in "\n".join(screen(torus, "", 60, 15))
 
 
 @pytest.mark.slow
