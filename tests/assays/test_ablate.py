@@ -1,5 +1,6 @@
 """What organisms need: how long they live without senses, memory or weights."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -28,6 +29,7 @@ def test_frozen_senses_are_those_of_an_evaluation(poles: primordia.Run) -> None:
     assert [each.lifespan for each in own] == [each.lived.ticks.mean() for each in expected]
     assert [each.intact for each in own] == [each.lived.ticks.mean() for each in whole]
     assert poles.ablate(champions[1:], games=3, ticks=400) == found[1::2]
+    assert json.dumps([each.to_dict() for each in found]), "no numbers of NumPy"
 
 
 def test_no_loss_takes_more_than_it_says(subjects: Subjects) -> None:

@@ -2,16 +2,10 @@
 
 import json
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 import primordia
-from primordia.assays.ablate import ablate
-from primordia.assays.effects import effects
-from primordia.assays.garden import garden
-from primordia.assays.line import line
-from primordia.assays.subjects import of_run
 from primordia.runs import loop
 from tests.commands import here
 from tests.worlds import HERD, config
@@ -42,28 +36,6 @@ def test_where_death_ignores_the_genome_nothing_is_inherited(tmp_path: Path) -> 
         assert world.both.slope == pytest.approx(0, abs=0.2)
     for world in run.threshold(0.1):
         assert world.advantage == pytest.approx(1, abs=0.5)
-
-
-@pytest.mark.parametrize("name", ["effects", "ablate", "garden", "line"])
-def test_assays_of_lives_tell_what_python_returns(
-    name: str, poles: primordia.Run, tmp_path: Path
-) -> None:
-    options = ["--games", 1, "--ticks", 60]
-    options += {"effects": ["--mutants", 30, "--scale", 0.1], "garden": ["--each", 2]}.get(name, [])
-    told = here("assay", name, poles.path, *options, "--out", tmp_path, "--json")
-    assert told.returncode == 0, told.stderr
-    run, subjects = poles.opened(), of_run(poles.opened())
-    champion = poles.oldest()
-    expected: list[Any] = {
-        "effects": lambda: effects(subjects, (0.1,), count=30, games=1, ticks=60),
-        "ablate": lambda: ablate(subjects, games=1, ticks=60),
-        "garden": lambda: garden(run, each=2, games=1, ticks=60),
-        "line": lambda: [line(run, champion.id, champion.world, games=1, ticks=60)],
-    }[name]()
-    assert json.loads(told.stdout) == {str(poles.path): [each.to_dict() for each in expected]}
-    assert (tmp_path / f"{name}.png").stat().st_size > 2000
-    table = here("assay", name, poles.path, *options)
-    assert str(poles.path) in table.stdout
 
 
 @pytest.mark.slow

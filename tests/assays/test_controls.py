@@ -56,21 +56,10 @@ def test_the_command_prints_what_python_gives(
     done = here(*words, "--json")
     assert json.loads(done.stdout) == {"rows": told}
     assert [each["games"] for each in told] == [2, 1, 2, 1]
-    text = here(*words, "--world", 1).stdout
-    names = [line.split()[0] for line in text.splitlines()[4:8]]
-    assert names == ["champion", "all", "best", "founder"]
     complains(here(*words[:2], "--founders", 0), 2, "--founders")
     with pytest.raises(InputError, match="at least one founder"):
         poles.standings(0, games=1, ticks=60)
     complains(here(*words[:2], "--world", 2), 2, "there is no world 2")
-
-
-def test_a_fork_has_no_champion_before_a_birth(poles: primordia.Run, tmp_path: Path) -> None:
-    run = primordia.load(poles.path / "0")
-    last = int(run.lives().ended.max())
-    fork = run.fork(last, tmp_path / "fork", stop={"ticks": last})
-    with pytest.raises(InputError, match="nothing has been born since the fork"):
-        fork.standings()
 
 
 class Seats(NamedTuple):
@@ -160,6 +149,12 @@ def test_the_number_of_founders_is_that_of_births_up_to_the_limit(
     typical = [(k, 0) for k in range(min(20, first))] + [(k, 2) for k in range(third)]
     assert some.numbers == typical
     assert some.players.keys.tolist() == [1000 * world + number for number, world in typical]
+
+
+def test_a_fork_has_no_champion_before_a_birth(invented: Any) -> None:
+    invented.lives.inherited[:] = True
+    with pytest.raises(InputError, match="nothing has been born since the fork"):
+        evolved(invented)
 
 
 def test_the_number_of_candidates_is_the_largest_of_all_worlds(invented: Any) -> None:

@@ -1,5 +1,7 @@
 """The oldest organisms, others and founders born again."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -12,6 +14,7 @@ from primordia.runs.lives import Lives
 
 
 def test_each_world_has_a_bed_of_each_group(poles: primordia.Run) -> None:
+    """The reborn live as in an evaluation."""
     found = garden(poles.opened(), each=6, games=2, ticks=400)
     assert [(bed.group, bed.world) for bed in found] == [
         (group, world) for group in ("oldest", "late-born", "founders") for world in (0, 1)
@@ -29,13 +32,10 @@ def test_each_world_has_a_bed_of_each_group(poles: primordia.Run) -> None:
     for bed in found[4:]:
         assert (bed.recorded, bed.kept, len(bed.organism)) == (None, None, 6)
         assert bed.to_dict()["reborn"] == bed.reborn.tolist()
-
-
-def test_the_reborn_live_as_in_an_evaluation(poles: primordia.Run) -> None:
-    bed = garden(poles.opened(), each=3, games=2, ticks=400)[1]
-    organisms = [poles.organism(int(each), 1) for each in bed.organism]
+    assert json.dumps([each.to_dict() for each in found]), "no numbers of NumPy"
+    organisms = [poles.organism(int(each), 1) for each in found[1].organism]
     evaluated = poles.evaluate(organisms, games=2, ticks=400)
-    assert bed.reborn.tolist() == [each.lived.ticks.mean() for each in evaluated]
+    assert found[1].reborn.tolist() == [each.lived.ticks.mean() for each in evaluated]
 
 
 def test_the_oldest_come_first_and_among_equals_the_last_born() -> None:

@@ -1,5 +1,6 @@
 """The genomes of a line of descent, born again."""
 
+import json
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
@@ -70,6 +71,7 @@ def test_only_new_genomes_live(poles: primordia.Run, champion: Organism) -> None
     assert {step.birth_cause for step in found.steps[1:]} <= {"mutant"}
     evaluated = champion.evaluate(games=2, ticks=300)
     assert found.steps[-1].reborn == evaluated.lived.ticks.mean(), "as in an evaluation"
+    assert json.dumps(found.to_dict()), "no numbers of NumPy"
 
 
 def test_a_long_line_is_sampled_from_end_to_end(poles: primordia.Run, champion: Organism) -> None:

@@ -34,11 +34,6 @@ def six_worlds(folder: Path, **settings: Any) -> primordia.Run:
     return primordia.load(folder)
 
 
-@pytest.fixture(scope="module")
-def poles(tmp_path_factory: pytest.TempPathFactory) -> primordia.Run:
-    return six_worlds(tmp_path_factory.mktemp("shadow") / "poles", stop={"ticks": 400})
-
-
 def of(original: list[list[int]], redrawn: list[list[int]], cut: int = 100) -> Shadow:
     """Return a result with these lives in each world."""
     world = np.repeat(np.arange(len(original)), [len(each) for each in original])
@@ -67,7 +62,7 @@ def test_nothing_is_found_where_children_inherit_nothing(tmp_path: Path) -> None
 
 def test_a_life_is_the_same_beside_any_others(poles: primordia.Run) -> None:
     run = poles.opened()
-    rows = np.flatnonzero(run.lives.rank < 12)[::2]
+    rows = np.flatnonzero(run.lives.rank < 36)[::2]
     for redrawn in (False, True):
         together = _lifespans(run, rows, redrawn, 100)
         assert len(np.unique(together)) > 10
@@ -157,11 +152,7 @@ def test_lives_are_cut_at_the_age_of_saturation_or_at_a_given_one(
 def test_the_command_prints_what_python_gives(poles: primordia.Run) -> None:
     words = "shadow", poles.path, "--organisms", 10, "--ticks", 100
     done = here(*words, "--json")
-    told = poles.shadow(10, 100).to_dict()
-    assert json.loads(done.stdout) == {"arms": [{**told, "interval": list(told["interval"])}]}
-    text = here(*words).stdout
-    assert text.startswith("poles: 60 organisms, each born again alone, from ")
-    assert "95 % interval" in text
+    assert json.loads(done.stdout) == {"arms": [poles.shadow(10, 100).to_dict()]}
     complains(here("shadow", poles.path, "--organisms", 0), 2, "--organisms", "0")
     complains(here("shadow", poles.path.parent / "no"), 2, "no")
 

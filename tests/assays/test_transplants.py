@@ -1,5 +1,7 @@
 """Organisms of one island on every island: their lives, and what is concluded from these."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -51,6 +53,7 @@ def test_natives_live_on_each_island_as_in_a_plain_world(isles: primordia.Run) -
                 alone = lifespans_in_games(plain, 2, 60).mean()
                 assert each.lived[home, place] == pytest.approx(alone)
         assert (each.lived[:, 0] != each.lived[:, 1]).all(), "the habitats differ"
+    assert json.dumps([each.to_dict() for each in found]), "no numbers of NumPy"
 
 
 def test_natives_are_compared_with_foreigners_and_with_themselves_elsewhere() -> None:
@@ -108,3 +111,4 @@ def test_a_line_does_not_live_in_the_games_in_which_its_organism_was_chosen(
         assert each.mastered[place] == each.mastered.max()
         best = zip(each.islands, last.lived, each.best_founder, strict=True)
         assert last.mastered == tuple(name for name, own, of in best if own > of)
+    assert json.dumps([each.to_dict() for each in (first, second)]), "no numbers of NumPy"

@@ -1,7 +1,5 @@
-"""Assays of the natives of one island, games on another island, and their commands."""
+"""Assays of the natives of one island, games on another island, and what commands refuse."""
 
-import json
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,9 +8,7 @@ import pytest
 import primordia
 from primordia.assays import shadow as shadows
 from primordia.assays.garden import garden
-from primordia.assays.generalists import generalists
 from primordia.assays.shadow import shadow
-from primordia.assays.transplant import transplant
 from primordia.organism.playing.players import founders_of, moved, players_of
 from tests.commands import complains, here
 
@@ -97,27 +93,6 @@ def test_games_on_another_island_are_those_of_its_habitat(isles: primordia.Run) 
     there = moved(run, players, np.array([0, 1]), 1)
     assert there.island is not None
     assert there.island.tolist() == [1, 1]
-
-
-@pytest.mark.parametrize("name", ["transplant", "generalists"])
-def test_assays_of_islands_tell_what_python_returns(
-    name: str, isles: primordia.Run, tmp_path: Path
-) -> None:
-    words: list[Any] = ["--each", 2, "--games", 1, "--ticks", 40]
-    words += ["--most", 3] if name == "generalists" else []
-    told = here("assay", name, isles.path, *words, "--out", tmp_path, "--json")
-    assert told.returncode == 0, told.stderr
-    run, manner = isles.opened(), {"each": 2, "games": 1, "ticks": 40}
-    found: list[Any] = {
-        "transplant": lambda: transplant(run, **manner),
-        "generalists": lambda: generalists(run, **manner, most=3),
-    }[name]()
-    expected = json.loads(json.dumps([each.to_dict() for each in found]))
-    assert json.loads(told.stdout) == {str(isles.path): expected}
-    assert (tmp_path / f"{name}.png").stat().st_size > 5000
-    table = here("assay", name, isles.path, *words)
-    assert str(isles.path) in table.stdout
-    assert "watch" in table.stdout
 
 
 def test_a_run_without_islands_is_refused_in_one_line(poles: primordia.Run) -> None:

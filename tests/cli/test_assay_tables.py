@@ -15,7 +15,8 @@ from primordia.assays.garden import Bed
 from primordia.assays.generalists import Ancestor, Generalists
 from primordia.assays.line import Line, Step
 from primordia.assays.transplant import Transplant
-from primordia.cli.assays import options, tables
+from primordia.cli.assays import assay, options, tables
+from primordia.figures import assays
 from primordia.history.heredity import Inherited, Pairs
 from primordia.history.threshold import Threshold
 
@@ -207,6 +208,12 @@ def test_each_of_several_arms_has_a_table_and_a_folder_of_figures(
     else:
         assert (out.index("table of runs/a") < out.index("table of runs/b"), err) == (True, "")
         assert out.endswith(figures)
+
+
+def test_each_assay_has_tables_and_a_figure() -> None:
+    for name in assay.commands:
+        assert hasattr(tables, name)
+        assert hasattr(assays, name)
 
 
 def test_unknown_numbers_are_dashes_and_zeros_are_not() -> None:

@@ -60,7 +60,7 @@ def run(noted: MagicMock, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> It
 def measure(monkeypatch: pytest.MonkeyPatch) -> MagicMock:
     """Let assays measure nothing; return a log of their calls."""
     log = MagicMock()
-    for name in ("garden", "ablate", "effects", "line", "compete"):
+    for name in ("garden", "ablate", "effects", "line", "compete", "transplant", "generalists"):
         monkeypatch.setattr(f"primordia.assays.{name}.{name}", getattr(log, name))
         getattr(log, name).return_value = []
     log.line.return_value = log.compete.return_value = MagicMock()
@@ -185,6 +185,10 @@ ASSAYS: dict[tuple[Any, ...], list[Any]] = {
         [call.of_run(OPENED, [(17, 0)], {}), call.of_file(FILE, (0,), None, {})],
     ("compete", "runs/a:0@2", f"{DOOR}:5", "--task", "T", "--json"):
         [call.of_run(OPENED, [(0, 2)], {}), call.of_task(DOOR, (5,), {})],
+    ("transplant", RUN, "--each", 3, "--after", 0.25, "--games", 2, "--ticks", 9, "--json"):
+        [call.transplant(OPENED, each=3, after=0.25, games=2, ticks=9)],
+    ("generalists", RUN, "--most", 7, "--each", 3, "--json"):
+        [call.generalists(OPENED, most=7, each=3, after=0.5, games=5, ticks=20_000)],
 }  # fmt: skip
 """Words of an assay -> calls that it makes."""
 
