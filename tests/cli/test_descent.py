@@ -203,6 +203,10 @@ def test_only_a_sweep_past_half_of_the_living_is_under_way() -> None:
     at_once = Sweep(9, "copy", 300, 300, 300, 1)
     text = descent._sweeps_text([at_once, done, begun])
     assert text.startswith("Sweeps to all of the living: 2; median duration: 650 ticks. Under way")
+    for lives, median in (((1000, 4003), "2,501.5"), ((40, 7, 9010), "40")):
+        some = [Sweep(n, "copy", 10, 11, 10 + ticks, 3) for n, ticks in enumerate(lives)]
+        whole = f"Sweeps to all of the living: {len(lives)}; median duration: {median} ticks."
+        assert descent._sweeps_text([*some, early]) == whole
 
 
 @pytest.mark.parametrize(

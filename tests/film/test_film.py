@@ -17,7 +17,7 @@ from tests.commands import complains, here
 @pytest.fixture(scope="module")
 def poles(tmp_path_factory: pytest.TempPathFactory) -> primordia.Run:
     path = tmp_path_factory.mktemp("film") / "poles"
-    return primordia.run("CartPole-survival", path, cells=8, hazard=0.002, stop={"ticks": 70})
+    return primordia.run("CartPole-survival", path, cells=8, hazard=0.002, stop={"ticks": 45})
 
 
 def test_a_world_is_filmed_with_the_life_of_the_oldest_beside_it(
@@ -41,8 +41,8 @@ def test_the_film_of_a_fork_counts_the_births_before_it(
     poles: primordia.Run, tmp_path: Path
 ) -> None:
     """An unchanged fork goes on as its source, so both count alike at each tick."""
-    fork = poles.fork(40, tmp_path / "fork", stop={"ticks": 70})
-    ticks = np.arange(40, 71)
+    fork = poles.fork(25, tmp_path / "fork", stop={"ticks": 45})
+    ticks = np.arange(25, 46)
     counts = [
         films.births_until(run.opened(), run.opened().lives, ticks).tolist()
         for run in (poles, fork)

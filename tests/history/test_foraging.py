@@ -1,7 +1,5 @@
-"""Food gathered over time: from the metrics, in figures, and in comparisons of runs."""
+"""Food gathered over time: from the metrics, and in figures."""
 
-import re
-import shutil
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -16,13 +14,11 @@ import primordia
 from primordia.figures import foraging as figure
 from primordia.figures import style
 from primordia.history import foraging as module
-from primordia.history.foraging import Harvest, foraging, harvests
+from primordia.history.foraging import Harvest, foraging
 from primordia.law.metabolism import ONE
 from primordia.runs import loop
 from primordia.runs.archive import Archive
-from primordia.runs.records import Records
 from primordia.settings.islands import Islands
-from tests.commands import here
 from tests.history.larders import FED, FOOD, RICH
 from tests.worlds import config
 
@@ -151,27 +147,3 @@ def test_food_of_intervals_shorter_than_a_tick_is_that_of_the_tick() -> None:
     """A comparison of a run of six ticks has intervals of half a tick."""
     harvest = Harvest(*np.array([[0.0, 1, 2], [0, 0.25, 0.75], [0, 1, 2]]))
     np.testing.assert_allclose(harvest.between(np.arange(5) / 2), [0.25, 0.25, 0.5, 0.5])
-
-
-def test_runs_with_food_are_compared_by_it(
-    fed: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The other run is a copy, in whose metrics all organisms gathered half as much."""
-    less, read = Path(shutil.copytree(fed, tmp_path / "less")), harvests
-
-    def halved(run: Records, worlds: int) -> list[Harvest]:
-        share = 0.5 if run.paths[0] == less else 1.0
-        return [each._replace(food=share * each.food) for each in read(run, worlds)]
-
-    monkeypatch.setattr("primordia.comparison.pace.harvests", halved)
-    compared = primordia.compare(fed, less)
-    assert compared.outcomes["food"] == "food a tick, late"
-    values = [arm.measured["food"].value.tolist() for arm in compared.arms]
-    np.testing.assert_allclose(values, [[FOOD] * 2, [FOOD / 2] * 2])
-    against = compared.contrast(compared.arms[1], "food")
-    assert (against.delta, against.ratio) == (-1, (0.5, 0.5))
-    curves = [arm.gathering.curve.mean() for arm in compared.arms]
-    np.testing.assert_allclose(curves, [FOOD, FOOD / 2])
-    printed = here("compare", fed, less, "--out", tmp_path)
-    assert re.search(r"-1\.00 less +-1\.00 +0\.5\n", printed.stdout)
-    assert "Food gathered in a tick" in (tmp_path / "compare.svg").read_text(encoding="utf-8")

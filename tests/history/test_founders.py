@@ -27,15 +27,11 @@ def run() -> Any:
     )
 
 
-def test_a_founder_depends_on_its_number_and_world_alone(
-    run: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_founder_depends_on_its_number_and_world_alone(run: Any) -> None:
     few, many = founders(run, 1, 3), founders(run, 1, 150)
     np.testing.assert_array_equal(few, many[:3])
     assert len(np.unique(many, axis=0)) == 150
     assert (founders(run, 0, 3) != few).any(axis=1).all()
-    monkeypatch.setattr(made, "AT_ONCE", 7)
-    np.testing.assert_array_equal(founders(run, 1, 20), many[:20])
 
 
 def test_the_first_founders_are_those_that_they_always_were(run: Any) -> None:

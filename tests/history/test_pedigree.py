@@ -29,11 +29,8 @@ def forked(noted: Path) -> Path:
     return primordia.load(noted).fork(at, noted.parent / "fork", stop={"ticks": 320}).path
 
 
-@pytest.mark.parametrize("which", ["noted", "forked"])
-def test_a_genome_does_not_depend_on_those_that_are_made_with_it(
-    which: str, request: pytest.FixtureRequest
-) -> None:
-    run = Archive(request.getfixturevalue(which))
+def test_a_genome_does_not_depend_on_those_that_are_made_with_it(forked: Path) -> None:
+    run = Archive(forked)
     rows = np.arange(len(run.lives))[::-3]  # in any order
     together = genomes(run, rows)
     for row, genome in list(zip(rows, together, strict=True))[::10]:

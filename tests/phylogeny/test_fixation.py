@@ -5,7 +5,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from primordia.history.ancestry import nearest
 from primordia.phylogeny.fixation import UNKNOWN, first_ticks
 from primordia.phylogeny.living import Turnover, branches
 from primordia.phylogeny.sweeps import sweeps
@@ -60,13 +59,6 @@ def test_a_long_line_is_looked_at_in_parts(size: int) -> None:
         reached = np.flatnonzero(lowest[lives.born[line[place]] :] >= place)
         expected = lives.born[line[place]] + reached[0] if len(reached) else UNKNOWN
         assert fixed[place] == expected
-
-
-def test_the_nearest_marked_ancestor_is_found_across_parts() -> None:
-    parent = np.arange(-1, 10_000)
-    parent[7000] = 2
-    found = nearest(parent, np.array([0, 5000]))
-    assert found[[4999, 5000, 6999, 7000, 9999]].tolist() == [0, 5000, 5000, 0, 0]
 
 
 @given(history=HISTORY, founders=st.integers(1, 3))

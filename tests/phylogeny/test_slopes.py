@@ -5,7 +5,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from primordia.phylogeny.drift import drift
 from primordia.phylogeny.frequencies import founders, instants
 from primordia.phylogeny.lines import lines_of_world, two_sided
 from primordia.phylogeny.living import Census, Turnover, branches
@@ -41,8 +40,9 @@ def test_shares_of_5_and_of_95_percent_are_still_measured(living: int) -> None:
 
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Draw fewer shadows of each line."""
+    """Draw fewer shadows of each line, in calls of few sizes."""
     monkeypatch.setattr("primordia.phylogeny.slopes.MOST", 200)
+    monkeypatch.setattr("primordia.phylogeny.slopes.SMALLEST", 11)
     monkeypatch.setattr("primordia.phylogeny.drift.MOST", 40)
 
 
@@ -83,14 +83,6 @@ def test_where_nothing_drifts_a_shadow_has_the_slope_of_its_line() -> None:
     slopes = observed(counts, census.living, census.ticks)
     shadows = of_shadows(census, Turnover.of(lives), counts, seed=1)
     np.testing.assert_allclose(shadows, np.tile(slopes[:, None], 200), rtol=1e-9)
-
-
-def test_the_chance_to_be_all_is_the_share_at_the_beginning() -> None:
-    """Moran 1958: each of n organisms is the ancestor of all in the end with probability 1 / n."""
-    lives = moran(6, 600, 11)
-    found = drift(lives, Turnover.of(lives), instants(0, 600), 6, seed=5)
-    assert (found.final.max(axis=1) == 1).all()
-    assert found.final.mean(axis=0) == pytest.approx(np.full(6, 1 / 6), abs=0.09)
 
 
 @given(history=HISTORY, starts=st.integers(1, 3), at=st.integers(0, 30))
