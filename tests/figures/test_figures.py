@@ -3,8 +3,6 @@
 import re
 import shutil
 from pathlib import Path
-from types import SimpleNamespace
-from typing import Any
 
 import matplotlib
 import numpy as np
@@ -20,8 +18,9 @@ from primordia.runs import loop
 from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
 from tests.commands import complains, here
+from tests.figures.reading import run_of
 from tests.synthetic import world_of, worlds_of
-from tests.worlds import HERD, MEADOW, config
+from tests.worlds import HERD, config
 
 
 @pytest.fixture(scope="module")
@@ -30,13 +29,6 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     where = tmp_path_factory.mktemp("figures") / "run"
     loop.start(config(HERD, stop={"ticks": 900}), where)
     return where
-
-
-def seen(lives: Lives, **settings: Any) -> Any:
-    """Return lives as figures take them."""
-    return SimpleNamespace(
-        lives=lives, config=config(MEADOW, **{"cells": 24, "seeds": 3, **settings})
-    )
 
 
 def test_each_of_at_most_forty_bins_has_thirty_dead() -> None:
@@ -56,7 +48,7 @@ def test_each_of_at_most_forty_bins_has_thirty_dead() -> None:
 def test_space_time_says_what_the_order_of_cells_means_and_has_at_most_512_columns(
     topology: str, cells: int, shown: int, label: str
 ) -> None:
-    run = seen(
+    run = run_of(
         world_of([(0, 10, True), (11, 0, False)]), cells=cells, placement={"topology": topology}
     )
     with style.applied():
@@ -70,28 +62,12 @@ SOMETIMES = {"foraging", "threshold", "investment", "islands", "traits"}
 islands."""
 
 
-@pytest.fixture(scope="module")
-def pictures(run: Path) -> list[Path]:
-    """Draw the figures of the run in their default folder."""
-    before = primordia.Run(run).info()
-    paths = primordia.Run(run).plot()
-    assert primordia.Run(run).info() == before
-    return paths
-
-
-def test_svg_keeps_text_as_text_and_dots_as_a_picture(pictures: list[Path]) -> None:
-    for path in pictures:
-        if path.suffix == ".svg":
-            text = re.findall(r"<text[^>]*>([^<]+)</text>", path.read_text(encoding="utf-8"))
-            assert any("(ticks)" in each for each in text), path
-            assert path.stat().st_size < 2**19
-
-
 @pytest.mark.slow
-def test_figures_have_the_same_bytes_under_any_style_of_the_user(
-    run: Path, pictures: list[Path], tmp_path: Path
-) -> None:
+def test_figures_have_the_same_bytes_under_any_style_of_the_user(run: Path, tmp_path: Path) -> None:
     """Only the two pictures that show a single world depend on the world that is asked for."""
+    before = primordia.Run(run).info()
+    pictures = primordia.Run(run).plot()
+    assert primordia.Run(run).info() == before
     with matplotlib.rc_context({"font.size": 30, "lines.linewidth": 9, "svg.fonttype": "path"}):
         done = here("plot", run, "--out", tmp_path / "some" / "where", "--world", 2)
         assert matplotlib.rcParams["font.size"] == 30
@@ -114,7 +90,7 @@ def test_figures_have_the_same_bytes_under_any_style_of_the_user(
     ids=["tick 0", "no deaths", "three worlds"],
 )
 def test_every_figure_is_drawn_of_any_world(lives: Lives) -> None:
-    run = seen(lives, cells=24, seeds=lives.worlds)
+    run = run_of(lives, cells=24, seeds=lives.worlds)
     with style.applied():
         for name in KNOWN:
             figure = find(name)(run, 0)
@@ -147,6 +123,10 @@ def test_one_figure_can_be_drawn_alone_ours_or_your_own(run: Path, tmp_path: Pat
     names = ["dots.png", "dots.svg", "ages.png", "ages.svg"]
     assert done.stdout.split() == [str(tmp_path / name) for name in names]
     assert "dots of world 1" in (tmp_path / "dots.svg").read_text(encoding="utf-8")
+    svg = tmp_path / "ages.svg"
+    texts = re.findall(r"<text[^>]*>([^<]+)</text>", svg.read_text(encoding="utf-8"))
+    assert any("(ticks)" in each for each in texts), "text is text"
+    assert svg.stat().st_size < 2**19, "dots are a picture"
     complains(here("plot", run, "--figure", "agse"), 2, "no figure named 'agse'; known: ages,")
     complains(here("plot", run, "--figure", "no.such:figure"), 2, "cannot be loaded")
 

@@ -33,6 +33,12 @@ def torus(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
+def torus_content(torus: Path) -> dict[str, Any]:
+    """Return the content of its page."""
+    return of_run(Archive(torus), filmed=False)
+
+
+@pytest.fixture(scope="session")
 def shore(torus: Path) -> Archive:
     """Return the run on a torus as if its rows were islands: the first one, and the other three."""
     islands = [{"name": "dune"}, {"name": "marsh", "share": 3.0}]

@@ -69,17 +69,6 @@ def test_outcomes_and_effects_are_those_of_each_arm(compared: Comparison) -> Non
     ]
 
 
-def test_a_page_has_the_tables_of_a_comparison(
-    compared: Comparison, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(arms, "compare", lambda runs: compared)
-    monkeypatch.setattr(arms, "_over_time", lambda runs, colours: [])
-    runs: Any = [None] * 3
-    head, rows = effects(compared)
-    of_effects = {"title": "Effects", "head": head, "rows": rows}
-    assert arms.arms(runs)["tables"] == [_outcomes(compared), of_effects]
-
-
 def test_survival_of_each_arm_has_its_name_and_colour(compared: Comparison) -> None:
     panel = _survival(compared, COLOURS)
     assert (panel["x"], panel["y"]) == ("age (ticks)", "fraction alive")
@@ -161,7 +150,10 @@ def test_two_arms_have_tables_notes_and_curves(
     monkeypatch.setattr(arms, "compare", lambda given: two if given is runs else None)
     monkeypatch.setattr(arms, "evidence_notes", lambda given: [given.task, "Needs: 9."])
     made = arms.arms(runs)
-    assert [table["title"] for table in made["tables"]] == ["Outcomes", "Effects"]
+    head, rows = effects(two)
+    outcomes = _outcomes(two)
+    assert outcomes["title"] == "Outcomes"
+    assert made["tables"] == [outcomes, {"title": "Effects", "head": head, "rows": rows}]
     assert "Cliff's delta" in made["notes"][0]
     assert made["notes"][1:] == ["meadow", "Needs: 9."]
     assert [panel["title"] for panel in made["panels"]] == [

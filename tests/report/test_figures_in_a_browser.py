@@ -152,9 +152,8 @@ def test_each_picture_of_a_film_has_its_words_and_its_colours(
             np.testing.assert_allclose(pixel, expected, atol=1.5)
 
 
-def test_the_phylogeny_is_coloured_by_a_trait(torus_page: Path, page: Page) -> None:
+def is_coloured_by_a_trait(page: Page) -> None:
     """Equal ratios are equally far apart in the scale, and the key has its ends."""
-    page.open_file(torus_page)
     assert not page.all("#trait"), "bodies are not inherited here"
     page.script(
         "window.made = { traits: { names: ['leg', 'arm'], scale: ['#101010', '#202020', '#303030'] },"
@@ -264,6 +263,7 @@ def test_the_phylogeny_is_drawn_over_births_and_read_by_keys_and_mouse(
     words = page.text(TOLD)
     page.hover(page.all(".tree .hit")[3], 0.5, 0.5)
     page.until(lambda: page.text(TOLD) != words)
+    is_coloured_by_a_trait(page)
     assert page.complaints() == []
 
 

@@ -70,15 +70,13 @@ def test_nodes_of_the_phylogeny_have_their_islands(shore: Archive, content: dict
             assert node["island"] == (cell >= 6)
 
 
-def test_a_plain_page_has_no_word_on_islands(torus: Path) -> None:
-    run = Archive(torus)
-    made = of_run(run, filmed=False)
-    assert "islands" not in made
-    assert "island" not in setting(run.config)
-    for world in made["worlds"]:
+def test_a_plain_page_has_no_word_on_islands(torus: Path, torus_content: dict[str, Any]) -> None:
+    assert "islands" not in torus_content
+    assert "island" not in setting(Archive(torus).config)
+    for world in torus_content["worlds"]:
         assert "islands" not in world
         assert "island" not in world["tree"]["nodes"][0]
-    assert not any("island" in panel["title"] for panel in made["panels"])
+    assert not any("island" in panel["title"] for panel in torus_content["panels"])
 
 
 def test_the_settings_name_the_islands(shore: Archive) -> None:
@@ -111,11 +109,11 @@ def test_islands_in_a_browser(shore_page: Path, page: Page) -> None:
         "organism 7, born at tick 3, on marsh, alive"
     )
     assert "on marsh" not in page.script(words + "[])")
+    space_time_names_its_islands(page)
 
 
-def test_islands_of_the_space_time_picture(shore_page: Path, page: Page) -> None:
+def space_time_names_its_islands(page: Page) -> None:
     """Above the cells of an island is a line in its colour. The words of a cell name its island."""
-    page.open_file(shore_page)
     canvas = page.one("#ground")
     pixels = page.pixels(canvas)[..., :3]
     for island, colour in enumerate(COLOURS.values()):

@@ -130,20 +130,29 @@ def not_crossing(nodes: Nodes) -> bool:
     return True
 
 
-def test_a_film_of_a_torus_shows_every_cell(torus: Path) -> None:
+def test_a_film_of_a_torus_shows_each_cell_with_the_ink_of_its_line_and_the_shade_of_its_age(
+    torus: Path,
+) -> None:
+    """There are 8 shades: equal steps of the logarithm of 1 + age, up to the longest life."""
     run = Archive(torus)
     lives = run.lives.of_world(1)
-    shown = film.film(Ground(lives, 24), run.config)
-    assert shown is not None
-    assert (shown["rows"], shown["columns"]) == (4, 6)
-    pictures = unpacked(shown["cells"]).reshape(-1, 24)
-    for place, tick, alive_, picture in zip(
-        shown["places"], shown["ticks"], shown["alive"], pictures, strict=True
+    shown, clades, longest = Ground(lives, 24), clades_of(lives), int(lives.lifespan.max())
+    made = film.film(shown, run.config)
+    assert made is not None
+    assert (made["rows"], made["columns"]) == (4, 6)
+    pictures = unpacked(made["cells"]).reshape(-1, 24)
+    for number, (place, tick, alive_, picture) in enumerate(
+        zip(made["places"], made["ticks"], made["alive"], pictures, strict=True)
     ):
         assert tick == lives.born[place]
         there = occupants(lives, tick)
         assert np.flatnonzero(picture).tolist() == sorted(there)
         assert alive_ == len(there)
+        for cell, row in there.items() if number % 9 == 0 else ():
+            byte, age = int(picture[cell]), tick - int(lives.born[row])
+            assert byte // 32 == min(int(8 * np.log1p(age) / np.log1p(longest)), 7)
+            codes = spacetime.line_codes(lives, clades, np.array([[row]]), np.array([tick]))[0]
+            assert byte % 32 - 1 == shown.inks(codes)[0]
     shades = pictures[pictures > 0] >> film.INK_BITS
     assert shades.min() == 0
     assert shades.max() == 7, "the largest number of three bits"
@@ -214,23 +223,6 @@ def test_a_phylogeny_shows_a_limited_number_of_the_living_spread_over_the_cells(
     alive_ = [node["number"] for node in made["nodes"] if node["alive"]]
     assert sorted(alive_) == numbers
     assert tree(Ground(tiny().take(np.arange(4)), 6)) is None, "nothing lives"
-
-
-def test_each_byte_of_a_film_is_the_ink_of_a_line_and_the_shade_of_an_age(torus: Path) -> None:
-    """There are 8 shades: equal steps of the logarithm of 1 + age, up to the longest life."""
-    run = Archive(torus)
-    lives = run.lives.of_world(1)
-    shown, clades = Ground(lives, 24), clades_of(lives)
-    made = film.film(shown, run.config)
-    assert made is not None
-    pictures, longest = unpacked(made["cells"]).reshape(-1, 24), int(lives.lifespan.max())
-    for tick, picture in list(zip(made["ticks"], pictures, strict=True))[::9]:
-        for cell, row in occupants(lives, tick).items():
-            byte = int(picture[cell])
-            age = tick - int(lives.born[row])
-            assert byte // 32 == min(int(8 * np.log1p(age) / np.log1p(longest)), 7)
-            codes = spacetime.line_codes(lives, clades, np.array([[row]]), np.array([tick]))[0]
-            assert byte % 32 - 1 == shown.inks(codes)[0]
 
 
 def test_shades_of_a_film_are_relative_to_the_longest_life_of_all_also_of_the_living() -> None:

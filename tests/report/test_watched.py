@@ -23,13 +23,18 @@ class Runs:
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.newest = {Path("one"): 0, Path("other"): 0}
+        self.unopened: list[Exception] = []
         self.errors: list[Exception] = []
-        run = SimpleNamespace(paths=(Path("one"), Path("other")))
         monkeypatch.setattr(
             watched, "newest_version", lambda path: ("checkpoint", self.newest[path])
         )
         monkeypatch.setattr(watched, "of_run", self._read)
-        self.watched = Watched(lambda: run)  # type: ignore[return-value]
+        self.watched = Watched(self._open)
+
+    def _open(self) -> Any:
+        if self.unopened:
+            raise self.unopened.pop()
+        return SimpleNamespace(paths=(Path("one"), Path("other")))
 
     def _read(self, run: Any, filmed: bool) -> list[int]:
         assert not filmed, "films take too long"
@@ -63,8 +68,9 @@ def test_a_checkpoint_that_could_not_be_read_is_read_at_the_next_look(
     error: Exception, runs: Runs
 ) -> None:
     runs.newest[Path("one")] = 1
-    runs.errors.append(error)
-    assert runs.shown() == ([0, 0], 0)
+    for errors in (runs.unopened, runs.errors):
+        errors.append(error)
+        assert runs.shown() == ([0, 0], 0)
     assert runs.shown() == ([1, 0], 1)
 
 

@@ -16,6 +16,7 @@ from primordia.errors import InputError
 from primordia.runs import code
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
+from tests.report.unpacked import content_of
 from tests.strangers import LIVING, POND, TASK, begun, elsewhere, forget, words
 from tests.trouble import newest, reseal
 
@@ -35,6 +36,8 @@ def test_code_from_elsewhere_is_executed_only_when_trusted(
     forget()
     done = here(*words(LIVING[2], run))
     assert (done.returncode, done.stderr) == (0, ""), "trust is kept for other commands"
+    assert here("report", run).returncode == 0
+    assert "draws no pictures" in content_of(run / "report.html")["films"]["missing"]
     assert Archive(run.parent / "new").description.code == Archive(run).description.code
     forget()
     (run / "code" / "pond_depth.py").write_text("DEPTH = 4.0\n")
@@ -58,6 +61,9 @@ def test_looking_executes_no_code_of_a_run(folder: Path, monkeypatch: pytest.Mon
     ):
         done = here(*command)
         assert done.returncode == 0, done.stderr
+    films = content_of(run.parent / "report.html")["films"]
+    assert films["films"] == []
+    assert "--trust" in films["missing"]
     opened = primordia.load(run)
     assert len(opened.lives()) == opened.table("births").num_rows > 8
     assert len(opened.organism(0).genome()) == Archive(run).layout.length
