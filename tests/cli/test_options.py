@@ -224,14 +224,8 @@ def test_code_is_trusted_only_if_asked(words: tuple[Any, ...], run: MagicMock) -
 
 
 def test_several_runs_are_one_arm(run: MagicMock) -> None:
-    for words in (
-        "info --json",
-        "plot",
-        "assay heredity --json",
-        "shadow --json",
-        "report",
-        "track",
-    ):
+    commands = "info --json", "plot", "assay heredity --json", "shadow --json", "report", "track"
+    for words in commands:
         does(*words.split(), "one", "two")
         assert run.loaded.call_args.args[0] == (Path("one"), Path("two"))
 
