@@ -19,10 +19,9 @@ from tests.phylogeny import live
 
 @pytest.fixture(autouse=True)
 def _few_shadows(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Draw as few shadows of each world and line as a large world has, in calls of few sizes."""
+    """Draw as few shadows of each world and line as a large world has."""
     monkeypatch.setattr("primordia.phylogeny.drift.MOST", drift.FEWEST)
     monkeypatch.setattr("primordia.phylogeny.slopes.MOST", slopes.FEWEST)
-    monkeypatch.setattr("primordia.phylogeny.slopes.SMALLEST", 11)
 
 
 @pytest.fixture

@@ -40,9 +40,8 @@ def test_shares_of_5_and_of_95_percent_are_still_measured(living: int) -> None:
 
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Draw fewer shadows of each line, in calls of few sizes."""
+    """Draw fewer shadows of each line."""
     monkeypatch.setattr("primordia.phylogeny.slopes.MOST", 200)
-    monkeypatch.setattr("primordia.phylogeny.slopes.SMALLEST", 11)
     monkeypatch.setattr("primordia.phylogeny.drift.MOST", 40)
 
 

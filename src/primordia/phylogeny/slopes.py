@@ -21,9 +21,6 @@ MOST, FEWEST = 1000, 200
 """Largest and smallest number of shadows of a line."""
 EVENTS = 2**15
 """Number of births and deaths after which lost lines are put aside."""
-SMALLEST = 8
-"""Lines drift in calls of 2**SMALLEST lines, or of a larger power of two, since JAX compiles for each
-size."""
 
 
 class Slopes:
@@ -116,7 +113,7 @@ def _drift_on(now: np.ndarray, deal: Deal, first: int, last: int) -> None:
     rows = np.flatnonzero(now)
     if not len(rows):
         return
-    size = 1 << max(int(len(rows) - 1).bit_length(), SMALLEST)
+    size = 1 << max(int(len(rows) - 1).bit_length(), 8)  # few sizes, since JAX compiles for each
     padded = np.zeros((2, size), np.int32)
     padded[:, : len(rows)] = rows, now[rows]
     which, count = jax.device_put(list(padded))
