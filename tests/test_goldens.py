@@ -14,9 +14,9 @@ from tests.goldens import CASES, FILE, entries, live, tasks
 GOLDENS: dict[str, Any] = json.loads(FILE.read_text(encoding="utf-8"))
 PLAYS: dict[str, Any] = json.loads(plays.FILE.read_text(encoding="utf-8"))
 
-SHOWN = {"few-poles", "breakout-random-forager"}
-"""Tasks in JAX and on the host, what is drawn at random, and what feeds. Others are slow. Many tests
-share the compiled code of the few poles.
+SHOWN = {"few-poles"}
+"""A task in JAX. Many tests share its compiled code. The others are slow; one of them, on the host, is
+lived in `habitats/test_atari_lives.py`, where much is drawn at random and organisms feed.
 
 Every simulator but the Atari games is played below, and laws have seasons.
 """

@@ -1,8 +1,8 @@
 """Lives in Atari games: exact through a stop, lived again bit for bit, and shown on video."""
 
+from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
 
 import av
 import numpy as np
@@ -10,44 +10,29 @@ import pytest
 
 import primordia
 from primordia.habitats.atari.games import facts
-from primordia.habitats.atari.habitat import SCALED, Atari
+from primordia.habitats.atari.habitat import Atari
 from primordia.habitats.atari.simulator import NOOP, console
 from primordia.habitats.framed import MARGIN
-from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
-from primordia.organism.reliving.relived import ALONE, RelivedLife
+from primordia.organism.reliving.compare import relive
 from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
 from tests.commands import here
-from tests.organism.test_life import at_the_end
+from tests.goldens import CASES, live
+from tests.test_goldens import assert_lived_as_it_did
 
 pytest.importorskip("ale_py")
 
-TASK, SENSES = "Breakout-survival-forager", (72, 99, 101)
-SETTINGS: dict[str, Any] = {
-    "cells": 6,
-    "habitat": {
-        "sticky": 0.25,
-        "noops": 30,
-        "frame_skip": 3,
-        "food": "ram[72] > 130",
-        "workers": 0,
-    },
-    "metabolism": {"store": 25.0, "gain": 0.75},
-    "replication": 0.3,
-    "hazard": 0.01,
-    "sample_every": 50,
-}
-"""A world with sticky buttons, no-ops and hunger, in the law of a golden."""
+NAME = "breakout-random-forager"
+"""Name of a golden of a world with sticky buttons, no-ops and hunger."""
 
 
 @pytest.fixture(scope="module")
 def breakout(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Make a run with lives of all kinds, which was stopped at a tick of 90."""
-    run = tmp_path_factory.mktemp("breakout") / "run"
-    made = primordia.run(TASK, run, SETTINGS, stop={"ticks": 90, "until": "none"})
-    made.resume(ticks=250)
-    return made.path
+    """Live the golden, but stop it at a tick of 90, and go on to its end at 220."""
+    stopped = {**CASES[NAME].settings, "stop": {"ticks": 90, "until": "none"}}
+    case = replace(CASES[NAME], settings=stopped, then=({"ticks": 220},))
+    return live(case, tmp_path_factory.mktemp("breakout")).path
 
 
 def some(lives: Lives, which: np.ndarray, count: int) -> list[tuple[int, int]]:
@@ -58,25 +43,8 @@ def some(lives: Lives, which: np.ndarray, count: int) -> list[tuple[int, int]]:
     return [(int(lives.id[row]), int(lives.world[row])) for row in chosen]
 
 
-def assert_ends_as_recorded(run: Archive, organism: int, world: int) -> None:
-    """Assert that a life lived again ends as recorded: energy and score, and the senses of the living."""
-    life = RelivedLife.of(run, organism, world)
-    stretches = list(life.stretches())
-    last, scores = stretches[-1], [each.bodies["tally"][:, 0] for each in stretches]
-    assert last.tick[-1] == life.ends
-    assert last.cause[-1] == (life.cause if life.cause in ALONE else -1)
-    if life.cause is None:
-        stored = at_the_end(life)
-        np.testing.assert_array_equal(
-            SCALED[last.bodies["ram"][-1, SENSES]], stored["bodies.senses"]
-        )
-        assert last.energy[-1] == stored["world.organisms.energy"]
-        assert last.bodies["tally"][-1].tolist() == stored["bodies.tally"].tolist()
-    else:
-        rows = run.table("deaths").to_pylist()
-        (death,) = (row for row in rows if (row["id"], row["world"]) == (organism, world))
-        assert last.energy[-1] / ONE == death["energy"]
-        assert scores[-1][-1] == death["score"]
+def test_a_run_that_was_stopped_lives_as_the_golden(breakout: Path) -> None:
+    assert_lived_as_it_did(NAME, primordia.load(breakout))
 
 
 def test_lives_lived_again_end_as_recorded_also_through_a_stop(breakout: Path) -> None:
@@ -84,10 +52,14 @@ def test_lives_lived_again_end_as_recorded_also_through_a_stop(breakout: Path) -
     run = Archive(breakout)
     assert primordia.load(breakout).info()["versions"]["ale-py"] == version("ale-py")
     lives = run.lives
-    causes = [lives.cause == cause for cause in (Cause.FATAL, Cause.STARVED, Cause.HAZARD)]
-    for which in ((lives.born <= 90) & (lives.ended > 90), ~lives.died, *causes):
-        for organism, world in some(lives, which, 2):
-            assert_ends_as_recorded(run, organism, world)
+    causes = [lives.cause == cause for cause in (Cause.FATAL, Cause.HAZARD)]
+    dead = primordia.load(breakout).arrays("deaths")
+    ate = np.isin(lives.id, dead["id"][dead["food"] > 0])
+    groups = [(lives.born <= 90) & (lives.ended > 90), ~lives.died, *causes]
+    chosen = [who for which in groups for who in some(lives, which, 2)]
+    for organism, world in (*chosen, *some(lives, ate, 1)):
+        found = relive(run, organism, world)
+        assert found.agrees, found
 
 
 @pytest.mark.slow
@@ -98,10 +70,10 @@ def test_a_video_shows_a_life(breakout: Path, tmp_path: Path) -> None:
     done = here("replay", breakout, "--organism", organism, "--world", world, "--out", path)
     assert (done.returncode, done.stdout.strip()) == (0, str(path))
     with av.open(str(path)) as container:
-        assert container.streams.video[0].average_rate == 20
+        assert container.streams.video[0].average_rate == 15
         frames = [frame.to_ndarray(format="rgb24") for frame in container.decode(video=0)]
     ticks = lives.lifespan[lives.row(organism, world)]
-    assert len(frames) == ticks + 20  # the last picture is shown for a second
+    assert len(frames) == ticks + 15  # the last picture is shown for a second
     assert frames[0].shape == (420 + MARGIN, 640, 3)
     game, words = (slice(MARGIN + 4, None), slice(0, MARGIN - 4))
     for part in (game, words):
