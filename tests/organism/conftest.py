@@ -9,8 +9,7 @@ import primordia
 from primordia.organism.reliving.in_jax import LifeInJax
 from primordia.organism.reliving.on_host import LifeOnHost
 from primordia.runs import loop
-from primordia.runs.archive import Archive
-from tests.worlds import LEARNERS, MILLS, config
+from tests.worlds import MILLS, config
 
 CALM = {"hazard": 0.002}
 """A chance of accidents with which organisms of MILLS live longer."""
@@ -27,7 +26,7 @@ def _short_stretches() -> Iterator[None]:
 
 
 @pytest.fixture(
-    scope="package", params=["in JAX", pytest.param("on the host", marks=pytest.mark.slow)]
+    scope="session", params=["in JAX", pytest.param("on the host", marks=pytest.mark.slow)]
 )
 def chain(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     """Make a run of two worlds with seeds of its own, a fork of it, and a fork of the fork."""
@@ -42,7 +41,7 @@ def chain(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     return [run.path, fork.path, again.path]
 
 
-@pytest.fixture(scope="package")
+@pytest.fixture(scope="session")
 def mill(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Make a run of two worlds with a noisy motor and seasons that change the metabolism."""
     run = tmp_path_factory.mktemp("mill") / "run"
@@ -50,24 +49,9 @@ def mill(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return run
 
 
-@pytest.fixture(scope="package")
+@pytest.fixture(scope="session")
 def poles(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Make a world of poles, in which an organism lives long."""
     run = tmp_path_factory.mktemp("poles") / "run"
     stop = {"ticks": 6000, "until": "none"}
     return primordia.run("CartPole-survival", run, cells=8, hazard=0.002, seed=3, stop=stop).path
-
-
-@pytest.fixture(scope="package")
-def learners(tmp_path_factory: pytest.TempPathFactory) -> Archive:
-    """Make a world of plastic brains, whose buttons swap at the ages 6, 17 and 40.
-
-    Its records are changed: all organisms are born in tick 10 and alive in tick 65. Founder 7 can be,
-    since its pole may fall.
-    """
-    path = tmp_path_factory.mktemp("learners") / "run"
-    habitat = {**LEARNERS["habitat"], "angle_limit": 180.0, "track_limit": 1e9}
-    loop.start(config(**{**LEARNERS, "habitat": habitat}, stop={"births": 1}), path)
-    run = Archive(path)
-    run.lives.born[:], run.lives.seen[:], run.lives.ended[:] = 10, 10, 65
-    return run

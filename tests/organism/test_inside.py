@@ -1,6 +1,5 @@
-"""The inside of organisms: which worlds show it, what acts, colours of numbers, and what Python gives."""
+"""The inside of organisms: which worlds show it, what acts, and colours of numbers."""
 
-from pathlib import Path
 from typing import Any
 
 import jax
@@ -10,8 +9,6 @@ import pytest
 from primordia.habitats.contract import Compound, Continuous, Discrete
 from primordia.organism import inside
 from primordia.organism.inside import acting, is_shown, news_of, since_change, squashed, tints
-from primordia.organism.organism import Organism
-from primordia.runs.archive import Archive
 from tests.worlds import config
 
 SWAP = {"change": [{"kind": "reverse-actions", "at": [30, 60]}]}
@@ -66,25 +63,3 @@ def test_numbers_are_pale_at_0_and_have_full_colours_at_1_and_beyond() -> None:
     np.testing.assert_array_equal(found[0], [middle, low, high])
     np.testing.assert_array_equal(found[1, :2], [middle, low])
     np.testing.assert_allclose(found[1, 2], (middle + high) / 2, atol=1)
-
-
-def test_a_saved_life_says_how_often_its_world_changed_and_a_policy_shows_what_it_learned(
-    learners: Archive, tmp_path: Path
-) -> None:
-    """The world changes at the ages 6, 17 and 40; counts are those after each tick."""
-    organism = Organism(learners, 7)
-    organism.relive(save=tmp_path / "life.npz")
-    with np.load(tmp_path / "life.npz") as npz:
-        life = dict(npz)
-    assert life["changes"].dtype == np.int32
-    ages = 1 + np.flatnonzero(np.diff(life["changes"], prepend=0))
-    assert ages.tolist() == [6, 17, 40]
-    policy = organism.policy()
-    assert not policy.pictured["fast weights"].any()
-    assert [policy(senses) for senses in life["senses"]] == life["action"].tolist()
-    bound = learners.config.brain["bound"]
-    shown = policy.pictured["fast weights"]
-    assert (shown.shape, shown.dtype) == ((2, 3), np.float32)
-    fast = policy.memory[-shown.size :]
-    np.testing.assert_allclose(np.sort(shown, axis=None), np.sort(fast / bound), rtol=1e-6)
-    assert shown.any()

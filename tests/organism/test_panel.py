@@ -1,7 +1,9 @@
-"""The panel below the pictures of a life: brains that think again, the past, and marks of changes."""
+"""The panel below the pictures of a life: brains that think again, the past, and marks of changes.
+
+Also what Python gives of a brain that learns.
+"""
 
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,11 +13,14 @@ from PIL import Image, ImageColor, ImageDraw
 from primordia.brains.plastic import Plastic
 from primordia.habitats.framed import PAPER
 from primordia.organism.inside import CHANGED, squashed, tints
+from primordia.organism.organism import Organism
 from primordia.organism.reliving import panel, replay
 from primordia.organism.reliving.in_jax import LifeInJax
 from primordia.organism.reliving.panel import BLANK, FRAME, HEIGHT, Panels, Past
 from primordia.organism.reliving.relived import RelivedLife
+from primordia.runs import loop
 from primordia.runs.archive import Archive
+from tests.worlds import LEARNERS, config
 
 MARK, EMPTY = (np.array(ImageColor.getrgb(each)) for each in (CHANGED, BLANK))
 PICTURE = Image.new("RGB", (640, 100), (90, 90, 90))
@@ -35,6 +40,21 @@ def moments(
 def _stretches(monkeypatch: pytest.MonkeyPatch) -> None:
     """Live lives again in stretches of 24 ticks; the last one is shorter."""
     monkeypatch.setattr(LifeInJax, "TICKS", 24)
+
+
+@pytest.fixture(scope="module")
+def learners(tmp_path_factory: pytest.TempPathFactory) -> Archive:
+    """Make a world of plastic brains, whose buttons swap at the ages 6, 17 and 40.
+
+    Its records are changed: all organisms are born in tick 10 and alive in tick 65. Founder 7 can be,
+    since its pole may fall.
+    """
+    path = tmp_path_factory.mktemp("learners") / "run"
+    habitat = {**LEARNERS["habitat"], "angle_limit": 180.0, "track_limit": 1e9}
+    loop.start(config(**{**LEARNERS, "habitat": habitat}, stop={"births": 1}), path)
+    run = Archive(path)
+    run.lives.born[:], run.lives.seen[:], run.lives.ended[:] = 10, 10, 65
+    return run
 
 
 @pytest.fixture
@@ -84,13 +104,16 @@ def test_the_past_is_drawn_up_to_the_present_age_and_on_one_scale() -> None:
             np.testing.assert_allclose(place, tints(values[age - 1, row]), atol=1)
 
 
-def test_without_fast_weights_the_past_is_that_of_the_outputs(life: RelivedLife) -> None:
-    """Outputs are drawn as bars of theirs."""
-    fixed = replace(life, law=replace(life.law, brain=Plastic(hidden=3, bound=0.0)))
-    panels = Panels(fixed, [range(1, 6)], 5)
-    panels.follow(next(life.stretches()))
+def test_without_fast_weights_the_past_is_that_of_the_outputs(
+    life: RelivedLife, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Outputs are drawn as bars of theirs. The brain puts out given numbers and shows nothing else."""
+    output = np.linspace(-3, 3, 64, dtype=np.float32).reshape(32, 2)
+    panels, stretch = Panels(life, [range(1, 6)], 5), next(life.stretches())
+    monkeypatch.setattr(panel, "shared", lambda *_: lambda *given: (given[1], (output, {})))
+    panels.follow(stretch)
     assert panels._shown == {}
-    np.testing.assert_array_equal(panels._pasts[0]._rows, squashed(panels._output[:5]).T)
+    np.testing.assert_array_equal(panels._pasts[0]._rows, squashed(output[:5]).T)
 
 
 def test_bars_go_to_the_side_of_their_sign_and_those_that_act_are_dark() -> None:
@@ -133,3 +156,25 @@ def test_a_life_is_filmed_with_its_panel(life: RelivedLife, tmp_path: Path) -> N
         film.seek(2)
         framed = np.asarray(film.convert("RGB"), int)[:2, :320]
     assert np.abs(framed - MARK).max() < 24
+
+
+def test_a_saved_life_says_how_often_its_world_changed_and_a_policy_shows_what_it_learned(
+    learners: Archive, tmp_path: Path
+) -> None:
+    """The world changes at the ages 6, 17 and 40; counts are those after each tick."""
+    organism = Organism(learners, 7)
+    organism.relive(save=tmp_path / "life.npz")
+    with np.load(tmp_path / "life.npz") as npz:
+        life = dict(npz)
+    assert life["changes"].dtype == np.int32
+    ages = 1 + np.flatnonzero(np.diff(life["changes"], prepend=0))
+    assert ages.tolist() == [6, 17, 40]
+    policy = organism.policy()
+    assert not policy.pictured["fast weights"].any()
+    assert [policy(senses) for senses in life["senses"]] == life["action"].tolist()
+    bound = learners.config.brain["bound"]
+    shown = policy.pictured["fast weights"]
+    assert (shown.shape, shown.dtype) == ((2, 3), np.float32)
+    fast = policy.memory[-shown.size :]
+    np.testing.assert_allclose(np.sort(shown, axis=None), np.sort(fast / bound), rtol=1e-6)
+    assert shown.any()

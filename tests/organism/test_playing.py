@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-import primordia
 from primordia.habitats.contract import JaxHabitat
 from primordia.habitats.on_host import OnHost
 from primordia.law.genesis import body_words
@@ -16,9 +15,7 @@ from primordia.organism.playing.players import players_of
 from primordia.organism.playing.seats import ODD, Frozen, Manner, Seats, begun, mark
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
-from primordia.runs import loop
-from tests.organism.conftest import CALM
-from tests.worlds import MILLS, config
+from primordia.runs.archive import Archive
 
 
 def test_marks_of_senses_lose_no_bit() -> None:
@@ -38,19 +35,12 @@ def test_the_mark_of_senses_changes_with_each_bit_and_with_their_order() -> None
         assert (mark(np.ascontiguousarray(senses[:, order])) != before).all()
 
 
-BASES: dict[str, str | dict[str, Any]] = {"poles": "CartPole-survival", "mill": {**MILLS, **CALM}}
-
-
 @pytest.fixture(scope="module", params=[pytest.param("poles", marks=pytest.mark.slow), "mill"])
-def players(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Players:
+def players(request: pytest.FixtureRequest) -> Players:
     """Return a few organisms of a world, the last of which lives long."""
-    folder = tmp_path_factory.mktemp("run") / "run"
-    settings = config(BASES[request.param], seeds=2, cells=16, stop={"ticks": 400})
-    loop.start(settings, folder)
-    run = primordia.load(folder)
-    lives = run.lives()
-    some = [*range(0, min(len(lives), 60), 3), int(np.argmax(lives.lifespan))]
-    return players_of(run.opened(), np.array(some))
+    run = Archive(request.getfixturevalue(request.param))
+    some = [*range(0, min(len(run.lives), 60), 3), int(np.argmax(run.lives.lifespan))]
+    return players_of(run, np.array(some))
 
 
 @pytest.fixture(autouse=True)
@@ -209,6 +199,6 @@ def test_no_game_depends_on_those_that_leave_the_loop(
     games = []
     for factor in (2, 10**6):
         monkeypatch.setattr(in_jax, "FEWER", factor)
-        games.append(play(unequal, 3, 150, frozen=some_frozen(players)))
+        games.append(play(unequal, 3, 300, frozen=some_frozen(players)))
     same(*games)
     assert len(set(sizes)) > 1
