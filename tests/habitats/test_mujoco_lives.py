@@ -10,8 +10,7 @@ import tomli_w
 import primordia
 from primordia.errors import InputError
 from primordia.habitats.mujoco import picture as mujoco_picture
-from primordia.law.metabolism import ONE
-from primordia.organism.reliving.relived import RelivedLife
+from primordia.organism.reliving.compare import relive
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
 from tests.robots import MOTOR, SLIDE, born, of_task
@@ -57,16 +56,13 @@ def test_a_run_that_was_stopped_goes_on_exactly_and_only_with_its_model(boxes: P
     model.write_text(SLIDE.format(actuator=MOTOR))
     assert here("resume", boxes, "--ticks", 200).returncode == 0
     assert primordia.load(boxes).info()["versions"]["mujoco"] == mujoco.__version__
-    run, dead = Archive(boxes), primordia.load(boxes).arrays("deaths")
-    energy = {(w, i): e for w, i, e in zip(dead["world"], dead["id"], dead["energy"], strict=True)}
+    run = Archive(boxes)
     lives, through = run.lives, (run.lives.born <= 67) & (run.lives.ended > 67) & run.lives.died
     chosen = np.flatnonzero(through)[:3].tolist() + np.flatnonzero(lives.born > 67)[:3].tolist()
     assert len(chosen) == 6
     for row in chosen:
-        who = int(lives.world[row]), int(lives.id[row])
-        last = list(RelivedLife.of(run, who[1], who[0]).stretches())[-1]
-        assert last.tick[-1] == lives.ended[row]
-        assert not lives.died[row] or last.energy[-1] / ONE == energy[who]
+        found = relive(run, int(lives.id[row]), int(lives.world[row]))
+        assert found.agrees, found
 
 
 @pytest.mark.slow

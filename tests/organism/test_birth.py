@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 
 from primordia.compiled import jit
+from primordia.organism.reliving.compare import relive
 from primordia.organism.reliving.in_jax import LifeInJax
-from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import loop
 from primordia.runs.archive import Archive
-from tests.organism.test_life import assert_ends_as_recorded
 from tests.toys import Slope
 from tests.worlds import MEADOW, config, law_of
 
@@ -32,4 +31,5 @@ def test_a_body_starts_as_it_was_born(cells: int, tmp_path: Path) -> None:
     loop.start(config(MEADOW, habitat={"name": "tests.toys:Slope"}, **full), tmp_path / "run")
     run = Archive(tmp_path / "run")
     for row in range(0, cells, cells // 16):
-        assert_ends_as_recorded(RelivedLife.of(run, row))
+        found = relive(run, row)
+        assert found.agrees, found

@@ -9,41 +9,16 @@ import numpy as np
 import pytest
 
 import primordia
-from primordia.engine.state import named_leaves
 from primordia.law.life import BODILY
 from primordia.law.metabolism import ONE
 from primordia.law.world import Cause
 from primordia.organism.organism import Organism
+from primordia.organism.reliving.compare import relive
 from primordia.organism.reliving.instant import Stretch
-from primordia.organism.reliving.relived import ALONE, RelivedLife
+from primordia.organism.reliving.relived import RelivedLife
 from primordia.random.wide import wide
 from primordia.runs.archive import Archive
 from tests.worlds import MILLS
-
-
-def at_the_end(life: RelivedLife) -> dict[str, np.ndarray]:
-    """Return the body and energy that the checkpoint holds of a living organism."""
-    cell = life.world * life.config.cells + int(life.record.cell[0])
-    return {name: array[cell] for name, array in life.run.state.items() if len(array) > cell}
-
-
-def assert_ends_as_recorded(life: RelivedLife) -> list[Stretch]:
-    """Assert that it lives again as recorded: to its death, or to the checkpoint's body and energy."""
-    seen = list(life.stretches())
-    last, hungry = seen[-1], life.law.metabolism is not None
-    assert last.tick[-1] == life.ends
-    assert sum(len(each.tick) for each in seen) == life.ends - life.begins
-    if life.cause is None:
-        stored = at_the_end(life)
-        names = [name for name in stored if name.startswith("bodies") and name != "bodies.senses"]
-        for name, (_, leaf) in zip(names, named_leaves({"bodies": last.bodies}), strict=True):
-            np.testing.assert_array_equal(leaf[-1], stored[name])
-        assert last.energy[-1] == stored["world.organisms.energy"]
-        assert last.eaten[-1] == stored["world.organisms.eaten"]
-    assert not hungry or (last.energy[-1] <= 0) == (life.cause is Cause.STARVED)
-    assert last.cause[-1] == (life.cause if life.cause in ALONE else -1)
-    assert all((each.energy[:-1] > 0).all() for each in seen)
-    return seen
 
 
 @pytest.mark.parametrize("which", ["mill", "poles"])
@@ -55,7 +30,8 @@ def test_the_living_reach_their_recorded_state_when_lived_again(
     lives = run.lives
     alive = np.flatnonzero(~lives.died & (lives.lifespan > 0))
     for row in alive[:: max(1, len(alive) // 6)]:
-        assert_ends_as_recorded(RelivedLife.of(run, lives.id[row], lives.world[row]))
+        found = relive(run, int(lives.id[row]), int(lives.world[row]))
+        assert found.agrees, found
 
 
 def test_a_second_life_of_another_length_compiles_nothing(

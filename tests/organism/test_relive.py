@@ -19,7 +19,7 @@ from primordia.organism.reliving.relived import RelivedLife
 from primordia.runs import directory, loop
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
-from tests.toys import Mirror
+from tests.toys import Mill
 from tests.trouble import newest, reseal
 from tests.worlds import MILLS, config
 
@@ -200,9 +200,7 @@ def test_a_missing_segment_is_an_error_of_one_line(chain: list[Path], tmp_path: 
     complains(here("relive", run, number), 2, "000000.parquet is missing")
 
 
-def test_what_cannot_be_lived_again_is_refused(
-    chain: list[Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_cannot_be_lived_again_is_refused(chain: list[Path], tmp_path: Path) -> None:
     run, (organism, *_) = chain[0], Archive(chain[0]).lives.id
     complains(here("relive", run, 10**6), 2, "no organism 1000000 was born in world 0")
     complains(here("relive", run, organism, "--world", 7), 2, "was born in world 7")
@@ -217,11 +215,20 @@ def test_what_cannot_be_lived_again_is_refused(
     opened.lives.cause[opened.lives.row(dead(opened))] = Cause.RESTART
     with pytest.raises(InputError, match="ended when its run was resumed without its body"):
         relive(opened, int(opened.lives.id[opened.lives.cause == Cause.RESTART][0]))
-    monkeypatch.setattr(Mirror, "exact", False, raising=False)
-    older = Archive(chain[1])
-    if older.schema.tallies:
-        with pytest.raises(InputError, match="older than the fork, and the habitat cannot save"):
-            Organism(older, 0).relive()
+
+
+def test_a_habitat_that_cannot_save_bodies_begins_no_life_with_a_state(
+    chain: list[Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The mill is the habitat, or the one inside it."""
+    monkeypatch.setattr(Mill, "exact", False, raising=False)
+    run = Archive(chain[1])
+    older, later = (int(np.flatnonzero(run.lives.inherited == each)[0]) for each in (True, False))
+    assert Organism(run, later).relive().begin == "birth"
+    for since, place in ((None, "the fork"), (100, "the checkpoint")):
+        says = f"organism {run.lives.id[older]} is older than {place}, and the habitat cannot save"
+        with pytest.raises(InputError, match=says):
+            Organism(run, older).relive(since)
 
 
 def test_a_file_that_cannot_be_written_has_the_status_that_the_help_states(
