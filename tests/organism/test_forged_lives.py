@@ -81,9 +81,6 @@ def test_a_forged_death_is_noticed(
         dies_before = change is later and cause is not Cause.REPLACED
         assert found["ends"] == recorded - dies_before
         assert {row["name"] for row in found["respects"] if not row["agrees"]} >= respects
-    shown = here("relive", run, chosen[0])
-    assert shown.returncode == 1
-    assert "NO" in shown.stdout
 
 
 @pytest.mark.parametrize("name", ["energy", "eaten", "memory"])
@@ -139,15 +136,24 @@ CHANGES = {
 }
 
 
-@pytest.mark.parametrize("said", CHANGES)
-def test_a_record_that_differs_from_the_life_is_noticed(chain: list[Path], said: str) -> None:
-    """The record says that the organism died otherwise than it does."""
+def repeats(life: RelivedLife) -> bool:
+    """Return whether a life is lived again as its record says."""
+    try:
+        return len([*life.stretches()]) > 0
+    except Trouble as error:
+        if "did not repeat as recorded" not in str(error):
+            raise
+        return False
+
+
+@pytest.mark.parametrize("cause", [Cause.STARVED, Cause.FATAL, Cause.HAZARD])
+def test_a_record_that_differs_from_the_life_is_noticed(chain: list[Path], cause: Cause) -> None:
+    """The record says that the organism died otherwise than it does. Unchanged, it agrees."""
     run = Archive(chain[0])
     lives = run.lives
-    for cause in (Cause.STARVED, Cause.FATAL, Cause.HAZARD):
-        row = int(np.flatnonzero((lives.cause == cause) & (lives.lifespan > 4))[0])
-        life = RelivedLife.of(run, int(lives.id[row]), int(lives.world[row]))
-        assert len([*life.stretches()])
-        CHANGES[said](life)
-        with pytest.raises(Trouble, match="did not repeat as recorded"):
-            list(life.stretches())
+    row = int(np.flatnonzero((lives.cause == cause) & (lives.lifespan > 4))[0])
+    who = int(lives.id[row]), int(lives.world[row])
+    assert repeats(RelivedLife.of(run, *who))
+    for said, change in CHANGES.items():
+        change(life := RelivedLife.of(run, *who))
+        assert not repeats(life), said

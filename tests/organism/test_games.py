@@ -85,6 +85,8 @@ def test_whole_games_have_no_metabolism_and_are_cut_at_the_habitats_episode_too(
     assert [call["ticks"] for call in calls] == [ticks, cut]
     assert [call["games"] for call in calls] == [7, 7]
     assert [(each.organism, each.world) for each in found] == NUMBERS
+    keys = "organism world games distinct senses lifespan alive_when_cut score length cut"
+    assert list(found[0].to_dict()) == keys.split()
     for each, lengths in zip(found, ([10, 11], [20, 21]), strict=True):
         assert each.whole is not None
         assert each.lived.ticks.tolist() == each.whole.ticks.tolist() == lengths

@@ -1,4 +1,4 @@
-"""A brain as a function: its weights, its memory, and the number of its senses."""
+"""A brain as a function: its weights, and the number of its senses. `test_life.py` has its memory."""
 
 import numpy as np
 import pytest
@@ -36,17 +36,3 @@ def test_neither_fewer_nor_more_senses_are_accepted(more: int, law: Law, policy:
     says = f"^{law.senses + more} senses are given; the brain has {law.senses}$"
     with pytest.raises(InputError, match=says):
         policy(np.zeros(law.senses + more, np.float32))
-
-
-def test_a_policy_remembers_until_it_is_reset(law: Law, policy: Policy) -> None:
-    """The second of two calls with the same senses begins with the memory that the first one left."""
-    senses = np.full(law.senses, 0.25, np.float32)
-    assert policy.memory.tolist() == [0.0, 0.0]
-    policy(senses)
-    first = policy.memory
-    policy(senses)
-    assert (policy.memory != first).any()
-    policy.reset()
-    assert not policy.memory.any()
-    policy(senses)
-    np.testing.assert_array_equal(policy.memory, first)

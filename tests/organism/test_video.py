@@ -9,7 +9,6 @@ from PIL import Image
 
 import primordia
 from primordia.errors import InputError
-from primordia.habitats.cartpole.habitat import CartPole
 from primordia.organism import video
 from primordia.organism.reliving import replay
 from primordia.runs.archive import Archive
@@ -177,26 +176,6 @@ def test_a_gif_has_more_colours_with_a_sample(sampled: bool, tmp_path: Path) -> 
         found = gif.convert("RGB").getcolors(1000)
     assert found is not None
     assert (150 < len(found) <= 240) if sampled else (32 < len(found) <= 64)
-
-
-def test_a_picture_shows_where_the_cart_is_and_the_push() -> None:
-    habitat = CartPole()
-    middle, right = (
-        np.asarray(habitat.picture(np.array([x, 0, 0, 0], np.float32), np.int32(1)))
-        for x in (0.0, 2.0)
-    )
-    cart = np.array([35, 57, 91])
-    at = [np.flatnonzero((each == cart).all(axis=2).any(axis=0)).mean() for each in (middle, right)]
-    assert at[0] == pytest.approx(319.5, abs=1)
-    assert at[1] == pytest.approx(319.5 + 260 * 2.0 / 2.4, abs=1.5)
-    assert arrow_at(habitat, action=1) < 320 - 37 < 320 + 37 < arrow_at(habitat, action=0)
-
-
-def arrow_at(habitat: CartPole, action: int) -> float:
-    """Return where the push is drawn: on the side that it comes from."""
-    picture = np.asarray(habitat.picture(np.zeros(4, np.float32), np.int32(action)))
-    push = (picture == np.array([224, 160, 48])).all(axis=2)
-    return float(np.flatnonzero(push.any(axis=0)).mean())
 
 
 def test_wrong_input_is_an_error_that_says_why(poles: Path, mill: Path, tmp_path: Path) -> None:
