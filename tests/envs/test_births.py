@@ -1,4 +1,4 @@
-"""Births in environments: the given places, seeds and settings, and the returned senses."""
+"""Births in environments: the given places and seeds, and the returned senses."""
 
 from typing import Any
 
@@ -43,9 +43,3 @@ def test_returned_senses_do_not_change_later(kind: Any) -> None:
             returned.append(play()[0])
             copies.append(returned[-1].copy())
     np.testing.assert_array_equal(returned, copies)
-
-
-def test_settings_that_differ_from_those_of_the_task_hold() -> None:
-    settings = {"habitat": {"senses": ["theta"]}}
-    assert LifeEnv(TASK, settings).observation_space.shape == (1,)
-    assert LifeVectorEnv(TASK, 3, settings).observation_space.shape == (3, 1)

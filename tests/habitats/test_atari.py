@@ -42,13 +42,11 @@ def test_actions_are_those_that_the_settings_name(
         ),
         (["--habitat.game", "qbert"], "qbert is refused: the emulator does not restore"),
         (["--habitat.senses", "[3, 128]"], "there is no address 128"),
-        (["--habitat.fatal", "points <"], "'points <' cannot be read at column"),
         (["--habitat.fatal", "ram[200] == 1"], "ram goes from ram[0] to ram[127]"),
         (["--habitat.food", "lives and points"], "where a condition is needed"),
         (["--habitat.actions", "NOOP JUMP"], "there is no JUMP; pong takes NOOP, FIRE"),
         (["--habitat.mode", "77"], "mode: pong has [0, 1], not 77"),
         (["--habitat.difficulty", "9"], "difficulty: pong has [0, 1, 2, 3], not 9"),
-        (["--habitat.sticky", "1.5"], "habitat.sticky"),
     ],
 )
 def test_wrong_settings_are_errors_that_say_why(

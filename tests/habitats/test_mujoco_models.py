@@ -45,7 +45,6 @@ def test_sites_are_perceived_in_three_coordinates(tmp_path: Path) -> None:
         (["--habitat.fatal", "qpos[99] < 1"], "qpos goes from qpos[0] to qpos[8]"),
         (["--habitat.food", 'xpos["foot"][0]'], "xpos has the parts world, torso"),
         (["--habitat.senses", '["qpos[1:]", "velocity"]'], "there is no 'velocity'"),
-        (["--habitat.substeps", "0"], "habitat.substeps"),
     ],
 )
 def test_wrong_settings_are_errors_that_say_why(

@@ -12,7 +12,7 @@ from primordia.config import load, parsed
 from primordia.errors import InputError
 from primordia.settings.making import make
 from primordia.settings.tables import PARTS, merged
-from tests.commands import complains, here
+from tests.commands import here
 from tests.worlds import MEADOW, MILL, config
 
 TASK = "CartPole-survival"
@@ -91,22 +91,6 @@ def test_blocks_of_any_name_are_settings() -> None:
     assert law.governed("mutation.scale") == [
         f"mutation.blocks.{block}.scale" for block in ("OUT_3d", "0")
     ]
-
-
-@pytest.mark.parametrize(
-    ("words", "says"),
-    [
-        (["--brain.kind", "gated", "--brain.hiden", "3"], "did you mean 'brain.hidden'?"),
-        (["--brain.kind", "linear", "--brain.hidden", "3"], "no setting 'brain.hidden'"),
-        (
-            ["--brain.hidden", "0"],
-            "brain.hidden: input should be greater than or equal to 1, not 0",
-        ),
-        (["--mutation.blocks.input_bias.scale", "1"], "this brain has no block 'input_bias'"),
-    ],
-)
-def test_wrong_settings_of_a_part_are_errors_that_say_why(words: list[str], says: str) -> None:
-    complains(here("run", TASK, *words), 2, f"{TASK}: ", says)
 
 
 def test_help_shows_the_settings_of_the_brain_that_a_file_names(tmp_path: Path) -> None:
