@@ -17,6 +17,8 @@ from primordia.doctor import memo
 from primordia.figures import style
 from primordia.history import pedigree
 from primordia.organism.playing import in_jax
+from primordia.organism.reliving import relived
+from primordia.organism.reliving.in_jax import LifeInJax
 from tests import commands
 
 device.prepare()
@@ -74,14 +76,15 @@ def _compiled_code(tmp_path_factory: pytest.TempPathFactory) -> None:
 
 @pytest.fixture(autouse=True, scope="session")
 def _one_size() -> Iterator[None]:
-    """Repeat births and play games in calls of one size, since each size is compiled.
+    """Repeat births, play games and live again in calls of one size, since each size is compiled.
 
-    `test_batches` and `test_playing` have several sizes.
+    `test_batches`, `test_playing` and `test_panel` have other sizes.
     """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(in_jax, "FEWEST", 64)
         for name in ("FEW", "AT_ONCE"):
             patch.setattr(pedigree, name, 32)
+        patch.setattr(LifeInJax, "TICKS", relived.SHORT)  # the size of the lives of ancestors
         yield
 
 

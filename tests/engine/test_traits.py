@@ -13,6 +13,7 @@ from primordia.assays.subjects import of_run
 from primordia.figures import portraits, spacetime
 from primordia.figures.traits import draw
 from primordia.habitats.archipelago import joined
+from primordia.habitats.traits import Traits
 from primordia.history import traits as history
 from primordia.history.series import spaced
 from primordia.history.summary import summary
@@ -65,6 +66,18 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
+def opened(run: Path) -> Archive:
+    return Archive(run)
+
+
+@pytest.fixture(scope="module")
+def traits() -> Traits:
+    found = config(POLES).traits
+    assert found is not None
+    return found
+
+
+@pytest.fixture(scope="module")
 def fork(run: Path, tmp_path_factory: pytest.TempPathFactory) -> primordia.Run:
     """Return a fork in which what lived is unchanged."""
     out = tmp_path_factory.mktemp("traits") / "fork"
@@ -76,9 +89,9 @@ def lived() -> Lived:
     return Lived(config(POLES), 100)
 
 
-def test_a_fork_without_a_change_is_the_same_run(run: Path, fork: primordia.Run) -> None:
+def test_a_fork_without_a_change_is_the_same_run(opened: Archive, fork: primordia.Run) -> None:
     """Bodies, memories and genomes go on from a checkpoint in the middle of their lives."""
-    assert_lived_alike(Archive(run), fork.opened())
+    assert_lived_alike(opened, fork.opened())
     assert_rebuilt(fork.path)
 
 
@@ -107,9 +120,11 @@ def _assert_reborn_with_their_traits(lived: Lived) -> None:
     np.testing.assert_array_equal(before, after)
 
 
-def test_the_living_and_the_dead_live_again_in_their_bodies(run: Path, fork: primordia.Run) -> None:
+def test_the_living_and_the_dead_live_again_in_their_bodies(
+    opened: Archive, fork: primordia.Run
+) -> None:
     """On the moon, where gravity is 0.3 times that of the body."""
-    opened, forked = Archive(run), Archive(fork.path)
+    forked = Archive(fork.path)
     moon = opened.config.islands.sizes[0]
     chosen = [(opened, opened.lives.died == died) for died in (True, False)]
     chosen += [(forked, forked.lives.inherited & (forked.lives.ended > 200))]
@@ -122,9 +137,8 @@ def test_the_living_and_the_dead_live_again_in_their_bodies(run: Path, fork: pri
             assert life.agrees, life.respects
 
 
-def test_bodies_are_what_the_genes_of_the_living_say(lived: Lived) -> None:
-    traits, (world, parts) = config(POLES).traits, lived.engine.state
-    assert traits is not None
+def test_bodies_are_what_the_genes_of_the_living_say(lived: Lived, traits: Traits) -> None:
+    world, parts = lived.engine.state
     alive = np.asarray(world.organisms.alive)
     factors = traits.factors(np.asarray(world.organisms.genome["body"]))
     bodies = joined([island.inner.traits for island in parts.island], parts.sizes)
@@ -132,8 +146,8 @@ def test_bodies_are_what_the_genes_of_the_living_say(lived: Lived) -> None:
     assert len(np.unique(factors, axis=0)) > 10
 
 
-def test_the_loss_of_an_inherited_body_has_its_name(run: Path) -> None:
-    names = [loss.name for loss in _losses(of_run(Archive(run)), each_sense=False)]
+def test_the_loss_of_an_inherited_body_has_its_name(opened: Archive) -> None:
+    names = [loss.name for loss in _losses(of_run(opened), each_sense=False)]
     assert names[-1] == "inherited body"
     assert "output weights" in names
 
@@ -158,9 +172,9 @@ def test_brains_and_bodies_of_a_line_live_apart(run: Path) -> None:
     )
 
 
-def test_traits_of_the_living_are_in_the_summary(run: Path) -> None:
-    opened, traits = Archive(run), config(POLES).traits
-    assert traits is not None
+def test_traits_of_the_living_are_in_the_summary(
+    run: Path, opened: Archive, traits: Traits
+) -> None:
     info = primordia.load(run).info()
     for world, told in enumerate(info["worlds"]):
         living = opened.lives.of_world(world)
@@ -175,9 +189,9 @@ def test_traits_of_the_living_are_in_the_summary(run: Path) -> None:
     assert "living, medians over worlds: pole x" in summary({**info, "worlds": 3 * info["worlds"]})
 
 
-def test_ancestors_have_traits_also_before_a_fork(run: Path, fork: primordia.Run) -> None:
-    opened, traits = Archive(run), config(POLES).traits
-    assert traits is not None
+def test_ancestors_have_traits_also_before_a_fork(
+    opened: Archive, traits: Traits, fork: primordia.Run
+) -> None:
     lives = fork.opened().lives
     organism = int(lives.id[(lives.world == 1) & ~lives.inherited][-1])
     line = fork.ancestors(organism, 1)
@@ -193,11 +207,9 @@ def test_ancestors_have_traits_also_before_a_fork(run: Path, fork: primordia.Run
 
 
 def test_traits_over_births_stand_beside_their_neutral_shadows(
-    run: Path, monkeypatch: pytest.MonkeyPatch
+    opened: Archive, traits: Traits, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(history, "BINS", 4)
-    opened, traits = Archive(run), config(POLES).traits
-    assert traits is not None
     found = course(opened)
     assert found is not None
     assert found.own.shape == found.shadows.shape == (2, 2, len(found.middle))
@@ -216,9 +228,9 @@ def test_traits_over_births_stand_beside_their_neutral_shadows(
     assert [axes.get_title() for axes in figure.axes] == ["pole", "gravity"]
 
 
-def test_nodes_of_the_phylogeny_in_the_report_have_their_traits(run: Path) -> None:
-    opened, traits = Archive(run), config(POLES).traits
-    assert traits is not None
+def test_nodes_of_the_phylogeny_in_the_report_have_their_traits(
+    run: Path, opened: Archive, traits: Traits
+) -> None:
     tree = view(opened, 1, "seed", 1)["tree"]
     assert tree["traits"]["names"] == ["pole", "gravity"]
     for node in tree["nodes"]:
@@ -227,8 +239,8 @@ def test_nodes_of_the_phylogeny_in_the_report_have_their_traits(run: Path) -> No
     assert len({tuple(node["traits"]) for node in tree["nodes"]}) > 3
 
 
-def test_portraits_show_ancestors_with_their_own_bodies(run: Path) -> None:
-    opened, loaded = Archive(run), primordia.load(run)
+def test_portraits_show_ancestors_with_their_own_bodies(run: Path, opened: Archive) -> None:
+    loaded = primordia.load(run)
     organism = int(opened.lives.of_world(1).id[opened.lives.of_world(1).rank.argmax()])
     found = loaded.ancestors(organism, 1)
     figure = portraits.draw(opened, found)
@@ -244,9 +256,9 @@ def test_portraits_show_ancestors_with_their_own_bodies(run: Path) -> None:
     assert len(pictures) == len(shown)
 
 
-def test_cells_of_the_space_time_picture_have_the_colours_of_traits(run: Path) -> None:
-    opened, traits = Archive(run), config(POLES).traits
-    assert traits is not None
+def test_cells_of_the_space_time_picture_have_the_colours_of_traits(
+    opened: Archive, traits: Traits
+) -> None:
     figure = spacetime.draw(opened, 1)
     lives = opened.lives.of_world(1)
     panels = [axes for axes in figure.axes if axes.get_title() in traits.names]
@@ -262,11 +274,14 @@ def test_cells_of_the_space_time_picture_have_the_colours_of_traits(run: Path) -
 
 
 def test_a_phylogeny_has_traits_if_they_are_asked_for(
-    run: Path, fork: primordia.Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    run: Path,
+    opened: Archive,
+    traits: Traits,
+    fork: primordia.Run,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Those that lived before a fork have theirs from the run that was forked."""
-    opened, traits = Archive(run), config(POLES).traits
-    assert traits is not None
     factors = factors_of(opened, traits, np.arange(len(opened.lives)))
     monkeypatch.setattr(history, "AT_ONCE", 50)
     whole = primordia.load(run).phylogeny(traits=True)

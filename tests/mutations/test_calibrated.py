@@ -74,8 +74,8 @@ def test_where_nothing_or_everything_is_allowed_the_scale_ends() -> None:
 
 
 def test_copies_have_the_parents_genome_and_no_length() -> None:
-    mutation = Calibrated(probability=0.5, founder_scale=0.3)
-    of = family(mutation)
+    mutation = Calibrated(probability=1.0, founder_scale=0.3)
+    of = family(mutation, probability=0.5)
     quarters = noted(mutation, LAYOUT, of, distance)
     children, mutants = inherited(mutation, LAYOUT, of._replace(notes=quarters[:, None]))
     copies = ~mutants
@@ -110,11 +110,12 @@ def test_lengths_double_with_every_fourth_step() -> None:
 
 def test_seasons_change_two_rates_and_a_length_follows_the_present_rates() -> None:
     """Children of one tick may be born in worlds of different climates."""
-    mutation = Calibrated(probability=0.0, differs=0.25, founder_scale=0.3)
-    assert mutation.rates(LAYOUT) == {"probability": 0.0, "differs": 0.25}
-    assert mutation.governed("differs", LAYOUT) == ["differs"]
-    assert mutation.governed("founder_scale", LAYOUT) == []
-    of = family(mutation)
+    stated = Calibrated(probability=0.0, differs=0.25, founder_scale=0.3)
+    assert stated.rates(LAYOUT) == {"probability": 0.0, "differs": 0.25}
+    assert stated.governed("differs", LAYOUT) == ["differs"]
+    assert stated.governed("founder_scale", LAYOUT) == []
+    mutation = Calibrated(probability=1.0, founder_scale=0.3)
+    of = family(mutation, **stated.rates(LAYOUT))
     odd = np.arange(K) % 2
     small, large = (family(mutation, probability=1.0, differs=each) for each in (0.01, 0.16))
     here = {

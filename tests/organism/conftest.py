@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 
 import primordia
-from primordia.organism.reliving.in_jax import LifeInJax
 from primordia.organism.reliving.on_host import LifeOnHost
 from primordia.runs import loop
 from tests.worlds import MILLS, config
@@ -20,7 +19,6 @@ CLOCKED = {"name": "tests.toys:Clocked", "inner": "mill"}
 def _short_stretches() -> Iterator[None]:
     """Live lives again in short stretches, so that most lives take several."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(LifeInJax, "TICKS", 512)
         patch.setattr(LifeOnHost, "TICKS", 20)
         yield
 

@@ -10,6 +10,8 @@ from primordia.brains.contract import Brain, Genome
 from primordia.brains.layers import matvec
 from primordia.brains.layout import Shape
 from primordia.testing import ContractError, check_brain
+from primordia.testing import brain as checks
+from primordia.testing.report import advise
 from tests.testing.impure import counted
 
 
@@ -123,12 +125,16 @@ def test_a_brain_with_a_fault(brain: Brain, says: str) -> None:
         check_brain(brain)
 
 
-def test_products_that_are_added_are_no_fault_and_nothing_is_said_of_what_is_well() -> None:
+def test_products_that_are_added_are_no_fault_and_nothing_is_said_of_what_is_well(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The check ends with the advice, which only what is compiled for each run needs."""
+    advised = list[Brain]()
+    monkeypatch.setattr(checks, "advise", advised.append)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        check_brain(Fused())
-
-
-def test_what_is_compiled_for_each_run_is_warned_of() -> None:
+        check_brain(fused := Fused())
+        assert advised == [fused]
+        advise(fused)
     with pytest.warns(UserWarning, match="Listed is not hashed by its values, .* define __hash__"):
-        check_brain(Listed())
+        advise(Listed())
