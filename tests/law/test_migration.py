@@ -1,5 +1,7 @@
 """Children on islands of a well-mixed world, compared with a plain reference that acts one by one."""
 
+from functools import partial
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -8,7 +10,7 @@ import pytest
 from primordia.law.placement import Placement
 from primordia.random.wide import Wide
 from primordia.settings.islands import Islands
-from tests.law.test_placement import ROUNDS, N, W, words
+from tests.law.test_placement import ROUNDS, N, W, one_after_another, words
 
 ISLANDS = Islands(("west", "middle", "east"), (0, 3, 8, N))
 MIGRATION = np.repeat(np.float32([0.25, 0.0, 1.0]), ISLANDS.sizes)
@@ -32,35 +34,13 @@ def placed(rule: str, wants: np.ndarray, occupied: np.ndarray, drawn: np.ndarray
     return np.asarray(jax.jit(place)(drawn, wants, occupied))
 
 
-def reach(cell: int, word: int) -> list[int]:
-    """Return the cells in which a child may be born; it leaves if its word is below the chance."""
+def reach(cell: int, drawn: np.ndarray) -> list[int]:
+    """Return the cells in which a child may be born; it leaves if its parent's word, one of `drawn`, is
+    below the chance."""
     home = int(ISLANDS.of_cells(cell))
-    leaves = word < MIGRATION[cell] * 2**32
+    leaves = int(drawn[cell]) < MIGRATION[cell] * 2**32
     there = ISLANDS.of_cells(np.arange(N)) == home
     return [each for each in range(N) if (there[each] != leaves) and each != cell]
-
-
-def one_by_one(rule: str, drawn: np.ndarray, wants: np.ndarray, occupied: np.ndarray) -> list[int]:
-    """Return parents (N,) in one world from words (rounds, 2, N), wants (N,) and occupied (N,)."""
-    parent, full, waiting = [-1] * N, occupied.copy(), list(np.flatnonzero(wants))
-    for choice, priority in drawn[:-1]:
-        before, in_order = full.copy(), sorted(waiting, key=lambda cell: (priority[cell], cell))
-        waiting = []
-        for cell in in_order:
-            options = reach(cell, int(drawn[-1, 0, cell]))
-            if rule == "empty-only":
-                options = [option for option in options if not before[option]]
-            if not options:
-                continue
-            target = options[int(choice[cell]) * len(options) >> 32]
-            taken = parent[target] >= 0 if rule == "replacing" else full[target]
-            if not taken:
-                parent[target], full[target] = int(cell), True
-            elif rule == "empty-only":
-                waiting.append(cell)
-        if rule != "empty-only":
-            break
-    return parent
 
 
 @pytest.mark.parametrize("rule", ["blind", "empty-only"])
@@ -70,5 +50,7 @@ def test_placing_all_at_once_equals_placing_one_by_one(rule: str) -> None:
     wants = occupied & (rng.random((W, N)) < 0.8)
     parents = placed(rule, wants, occupied, drawn)
     for world in range(W):
-        alone = one_by_one(rule, drawn[:, :, world], wants[world], occupied[world])
-        assert parents[world].tolist() == alone
+        near = partial(reach, drawn=drawn[-1, 0, world])
+        rounds = drawn[:-1, :, world]
+        alone = one_after_another(near, rule, rounds, wants[world], occupied[world])
+        assert parents[world].tolist() == alone.tolist()

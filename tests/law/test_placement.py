@@ -1,5 +1,7 @@
 """Placement, compared with a plain reference that acts one by one."""
 
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import jax
@@ -17,17 +19,23 @@ ROUNDS = N + 1
 
 
 def one_after_another(
-    topology: str, rule: str, words: np.ndarray, wants: np.ndarray, occupied: np.ndarray
+    near: Callable[[int], list[int]],
+    rule: str,
+    words: np.ndarray,
+    wants: np.ndarray,
+    occupied: np.ndarray,
 ) -> np.ndarray:
-    """Return parents (N,) in one world from words (rounds, 2, N), wants (N,) and occupied (N,)."""
-    cells = len(wants)
-    parent, full = np.full(cells, -1), occupied.copy()
+    """Return parents (N,) in one world from words (rounds, 2, N), wants (N,) and occupied (N,).
+
+    `near` gives the cells in which a child of a cell may be born.
+    """
+    parent, full = np.full(len(wants), -1), occupied.copy()
     waiting = list(np.flatnonzero(wants))
     for choice, priority in words:
         in_order = sorted(waiting, key=lambda cell: (priority[cell], cell))
         before, waiting = full.copy(), []
         for cell in in_order:
-            options = reach(topology, cell, cells)
+            options = near(cell)
             if rule == "empty-only":
                 options = [option for option in options if not before[option]]
             if not options:
@@ -61,7 +69,7 @@ def test_placing_all_at_once_equals_placing_one_by_one(topology: Any, rule: Any)
     no organism wants a child.
 
     There is room beside an organism if a cell in its reach would take a child. Each topology and each
-    rule is tried; `test_draws.py` looks for empty cells of well-mixed worlds.
+    rule is tried; `test_turnover.py` looks for empty cells of well-mixed worlds.
     """
     placement = Placement(topology=topology, rule=rule)
 
@@ -77,7 +85,8 @@ def test_placing_all_at_once_equals_placing_one_by_one(topology: Any, rule: Any)
     parents, room = map(np.asarray, jax.jit(place)(drawn, wants, occupied))
     assert parents.dtype == np.int32
     for world in range(W):
-        alone = one_after_another(topology, rule, drawn[:, :, world], wants[world], occupied[world])
+        near = partial(reach, topology, cells=N)
+        alone = one_after_another(near, rule, drawn[:, :, world], wants[world], occupied[world])
         assert parents[world].tolist() == alone.tolist()
         for cell in np.flatnonzero(occupied[world]):
             free = not occupied[world, reach(topology, int(cell), N)].all()

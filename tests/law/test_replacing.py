@@ -1,10 +1,13 @@
 """One tick of births in occupied cells; `tests/engine/test_strange.py` has them in whole runs."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
 from primordia.random.keys import Purpose
 from primordia.random.wide import wide
+from tests.chronicle import reach
 from tests.law.test_placement import one_after_another
 from tests.law.turning import Turned, drawn, numbered, turned
 from tests.worlds import MEADOW, begun, law_of
@@ -41,7 +44,8 @@ def tick() -> Turned:
 
 def parents() -> np.ndarray:
     """Return the parent of the child that is born in each cell, or -1."""
-    return one_after_another("well-mixed", "replacing", words(Purpose.PLACE)[None], WANTS, ALIVE)
+    near = partial(reach, "well-mixed", cells=N)
+    return one_after_another(near, "replacing", words(Purpose.PLACE)[None], WANTS, ALIVE)
 
 
 def test_an_organism_that_is_replaced_is_a_parent_but_no_mate(tick: Turned) -> None:

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from jax.extend.random import threefry_2x32
 
 from primordia.random.keys import Purpose, below, bits, bits_if, chance, stream, streams, threefry
 from primordia.random.wide import Wide, to_host, wide
@@ -43,15 +42,6 @@ def test_the_cipher_gives_the_known_answers_of_random123(
     assert int(to_host(threefry(wide(key), wide(counter)))) == expected
 
 
-@FEW
-@given(word, word, st.lists(word, min_size=16, max_size=16))
-def test_the_cipher_is_that_of_jax(k0: int, k1: int, counters: list[int]) -> None:
-    a, b = np.array(counters, np.uint32).reshape(2, 8)
-    expected = threefry_2x32(jnp.array([k0, k1], jnp.uint32), jnp.concatenate([a, b]))
-    ours = threefry(Wide(jnp.uint32(k0), jnp.uint32(k1)), Wide(jnp.asarray(a), jnp.asarray(b)))
-    np.testing.assert_array_equal(jnp.concatenate(ours), expected)
-
-
 def test_each_purpose_keeps_its_number() -> None:
     """The numbers are part of the format: with another number a run would have other lives."""
     assert {purpose.name: purpose.value for purpose in Purpose} == {
@@ -78,28 +68,6 @@ def test_every_part_of_a_draws_name_matters() -> None:
     assert len(np.unique(words)) == len(names) * 16 * 4
     for half in (words >> np.uint64(32), words & np.uint64(0xFFFFFFFF)):
         assert len(np.unique(half)) > 0.999 * half.size
-
-
-@jax.jit
-def noise(seed: Wide, tick: Wide, cells: jax.Array, index: jax.Array) -> Wide:
-    return bits(stream(seed, Purpose.NOISE, tick), cells, index)
-
-
-@FEW
-@given(st.permutations(range(12)), st.integers(0, 2**64 - 1), st.integers(0, 2**64 - 1))
-def test_a_draw_does_not_depend_on_draws_made_with_it(
-    order: list[int], seed: int, tick: int
-) -> None:
-    numbers = [(seed + i // 2) % 2**64 for i in range(12)]
-    seeds, ticks = wide(np.array(numbers, np.uint64)), wide(np.full(12, tick, np.uint64))
-    cells, index = jnp.arange(12) * 1_000_003, jnp.arange(12) % 5
-    together = to_host(noise(seeds, ticks, cells, index))
-    some = np.array(order)
-    shuffled = noise(seeds.take(some), ticks, cells[some], index[some])
-    assert to_host(shuffled).tolist() == together[some].tolist()
-    one = order[0]
-    key = stream(seeds.take(one), Purpose.NOISE, ticks.take(0))
-    assert int(to_host(bits(key, cells[one], index[one]))) == together[one]
 
 
 def test_bits_if_gives_bits_or_zeros() -> None:
