@@ -9,7 +9,7 @@ import pytest
 
 from primordia import Run, device
 from tests import plays
-from tests.goldens import CASES, FILE, entries, live, tasks
+from tests.goldens import CASES, FILE, entries, live, others, placements, tasks
 
 GOLDENS: dict[str, Any] = json.loads(FILE.read_text(encoding="utf-8"))
 PLAYS: dict[str, Any] = json.loads(plays.FILE.read_text(encoding="utf-8"))
@@ -41,7 +41,11 @@ def test_much_happens_in_the_worlds_of_each_golden() -> None:
         assert counts["samples"] >= 3
 
 
-@pytest.mark.parametrize("name", marked(tasks(), SHOWN))
+LAWS = marked([*placements(), *others()], set())
+"""The law's parts. `tests/engine/test_strange.py` has one of them that is not slow."""
+
+
+@pytest.mark.parametrize("name", [*marked(tasks(), SHOWN), *LAWS])
 def test_each_task_lives_as_it_did(name: str, tmp_path: Path) -> None:
     assert_lives_as_it_did(name, tmp_path)
 

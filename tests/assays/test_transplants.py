@@ -31,7 +31,8 @@ def settings_of(run: Records, world: int, island: int) -> Rates:
 
 
 def test_natives_live_on_each_island_as_in_a_plain_world(isles: primordia.Run) -> None:
-    """Natives are spread evenly over the late births of their island."""
+    """Natives are spread evenly over the late births of their island. Those of all islands, mixed, live
+    each at home."""
     run = isles.opened()
     lives, islands = run.lives, run.config.islands
     found = transplant(run, each=EACH, games=2, ticks=60)
@@ -39,6 +40,7 @@ def test_natives_live_on_each_island_as_in_a_plain_world(isles: primordia.Run) -
     for each in found:
         late = lives.late(0.5) & (lives.world == each.world)
         assert each.lived.shape == (4, 3)
+        every, at_home = list[np.ndarray](), list[np.ndarray]()
         for home in range(3):
             native = np.flatnonzero(late & (islands.of_cells(lives.cell) == home))
             rows = native[((np.arange(EACH) + 0.5) * len(native) / EACH).astype(int)]
@@ -50,8 +52,14 @@ def test_natives_live_on_each_island_as_in_a_plain_world(isles: primordia.Run) -
                     rates=settings_of(run, each.world, place),
                     island=None,
                 )
-                alone = lifespans_in_games(plain, 2, 60).mean()
-                assert each.lived[home, place] == pytest.approx(alone)
+                alone = lifespans_in_games(plain, 2, 60)
+                assert each.lived[home, place] == pytest.approx(alone.mean())
+                if place == home:
+                    every.append(rows)
+                    at_home.append(alone)
+        mixed = players_of(run, np.stack(every, axis=1).ravel())
+        expected = np.stack(at_home, axis=1).reshape(-1, 2)
+        np.testing.assert_array_equal(lifespans_in_games(mixed, 2, 60), expected)
         assert (each.lived[:, 0] != each.lived[:, 1]).all(), "the habitats differ"
     assert json.dumps([each.to_dict() for each in found]), "no numbers of NumPy"
 

@@ -26,9 +26,10 @@ from {__name__} import SEEDS, anywhere, described
 print(described(anywhere(sys.argv[1], seed=SEEDS[0], seeds=2), 1))
 """
 ANYWHERE: dict[str, tuple[Any, dict[str, Any]]] = {
-    "poles": ("CartPole-survival", POLES),
+    "poles": ("CartPole-survival", {**POLES, "cells": 256}),
     "strange": (STRANGE, {}),
 }
+"""Some poles are so many that several threads would share a matrix among them."""
 
 
 def anywhere(name: str, **seeds: int) -> Lived:

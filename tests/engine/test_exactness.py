@@ -3,10 +3,6 @@
 `test_strange` tests it with worlds that have everything. Here are many worlds and many bodies.
 """
 
-import os
-import subprocess
-import sys
-
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -15,7 +11,6 @@ import pytest
 from primordia.brains.contract import find
 from primordia.compiled import jit
 from primordia.habitats.cartpole.habitat import CartPole
-from tests.commands import AFRESH, environment
 from tests.toys import Mill
 from tests.worlds import Lived, config
 
@@ -71,26 +66,3 @@ def test_brains_and_bodies_do_not_depend_on_their_number(kind: str, habitat) -> 
         few_memory, few_bodies = lives({k: v[:n] for k, v in genome.items()}, words[:n])
         np.testing.assert_array_equal(few_memory, memory[:n])
         np.testing.assert_array_equal(few_bodies, bodies[:n])
-
-
-PROGRAM = """
-import os, sys
-os.sched_setaffinity(0, [int(cpu) for cpu in sys.argv[1:]])
-from tests.worlds import Lived, config
-print(Lived(config(cells=64, seeds=8, seed=3), 600).digests())
-"""
-
-
-@pytest.mark.slow
-def test_a_run_is_the_same_on_any_number_of_threads() -> None:
-    def run(*processors: int) -> str:
-        command = [sys.executable, "-c", PROGRAM, *map(str, processors)]
-        variables = environment() | AFRESH
-        return subprocess.run(
-            command, env=variables, capture_output=True, text=True, check=True
-        ).stdout
-
-    if not hasattr(os, "sched_setaffinity") or len(os.sched_getaffinity(0)) < 2:
-        pytest.skip("needs Linux and two processors")
-    one, two = sorted(os.sched_getaffinity(0))[:2]
-    assert run(one) == run(one, two)

@@ -7,9 +7,6 @@ import numpy as np
 import pytest
 
 import primordia
-from primordia.habitats.archipelago import at
-from primordia.organism.playing.games import lifespans
-from primordia.organism.playing.players import players_of
 from primordia.organism.reliving.compare import relive
 from primordia.runs import loop
 from primordia.runs.archive import Archive
@@ -130,19 +127,3 @@ def test_equal_islands_are_a_plain_world() -> None:
 def test_one_island_is_a_plain_world() -> None:
     one = config({**MILL, "habitat": {**MILL["habitat"], "islands": [{"name": "only"}]}})
     assert Lived(one, 200).digests() == Lived(config(MILL), 200).digests()
-
-
-def test_games_are_played_on_the_island_of_each_player(run: Path) -> None:
-    """They are the games of a plain world that is like the island everywhere."""
-    opened = Archive(run)
-    islands = opened.config.islands
-    players = players_of(opened, np.flatnonzero(opened.lives.world == 0)[:30])
-    assert set(players.island.tolist()) == {0, 1, 2}
-    together = lifespans(players, 60)
-    for number in range(islands.count):
-        here = players.island == number
-        alone = players.take(here)._replace(
-            habitat=at(opened.config.build_habitat(), islands.bounds[number]), island=None
-        )
-        np.testing.assert_array_equal(lifespans(alone, 60), together[here])
-    assert len(set(together.tolist())) > 3
