@@ -107,6 +107,7 @@ def test_another_module_of_the_same_name_is_refused_before_any_is_admitted(writt
     own_code.load("alone")
     same = {name: each._replace(file=Path("/other") / name) for name, each in code.items()}
     own_code.admit(same)
+    assert own_code.is_loaded(same), "only the text matters"
     other = {
         "pair.py": Source(Path("/o/pair.py"), b""),
         "alone.py": Source(Path("/o/alone.py"), b""),

@@ -59,19 +59,6 @@ def test_a_package_has_precedence_and_its_parts_may_be_in_several_places(
         assert found == {name: tmp_path / place / name}
 
 
-@pytest.mark.parametrize("there", [b"x = 1", b"x = 2", None])
-def test_code_is_loaded_if_each_of_its_files_is(
-    there: bytes | None, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The second of two files is loaded with its text, with another text, or not at all."""
-    code = {name: own_code.Source(Path(name), b"x = 1") for name in ("one.py", "box/two.py")}
-    imported = {"one": code["one.py"]}
-    if there is not None:
-        imported["box.two"] = own_code.Source(Path("two.py"), there)
-    monkeypatch.setattr(own_code, "_loaded", imported.get)
-    assert own_code.is_loaded(code) == (there == b"x = 1")
-
-
 def test_parts_of_installed_packages_are_recorded_by_version(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from safetensors import SafetensorError
 from safetensors.numpy import save_file
 
 from primordia.brains import genomes
@@ -55,7 +56,14 @@ def test_weights_of_each_type_of_float_become_float32(
 @pytest.mark.parametrize("of_state", [True, False])
 @pytest.mark.parametrize(
     ("weight", "accepted"),
-    [(3.4028234e38, True), (-3.4028234e38, True), (3.5e38, False), (-1e300, False), (1e-300, True)],
+    [
+        (3.4028234e38, True),
+        (-3.4028234e38, True),
+        (3.5e38, False),
+        (-1e300, False),
+        (1e-300, True),
+        (np.nan, False),
+    ],
 )
 def test_a_weight_that_float32_cannot_hold_is_refused(
     weight: float, accepted: bool, of_state: bool, tmp_path: Path
@@ -139,6 +147,7 @@ def test_the_first_block_of_a_state_that_does_not_fit_is_named_with_its_shape(
         (PermissionError(13, "Permission denied"), "cannot be read: Permission denied"),
         (OSError("bad sector"), "cannot be read: bad sector"),
         (ValueError("a torn header"), "is not a safetensors file: a torn header"),
+        (SafetensorError("no header"), "is not a safetensors file: no header"),
     ],
 )
 def test_a_file_that_cannot_be_opened_is_named_with_the_reason(

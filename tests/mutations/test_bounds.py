@@ -1,4 +1,5 @@
-"""Bounds of the settings of mutations and of the law: the last value is accepted, the next is refused."""
+"""Bounds of the settings of mutations, the metabolism and brains: the last value is accepted, the next is
+refused. `tests/settings/test_bounds.py` has the settings of a run."""
 
 from typing import Any
 
@@ -64,18 +65,6 @@ BOUNDS: list[tuple[dict[str, Any], str, Any, Any]] = [
     ({}, "motor.sd", 100.0, 100.1),
     ({}, "brain.hidden", 1, 0),
     ({}, "brain.hidden", 4096, 4097),
-    ({}, "replication", 0.0, -TINY),
-    ({}, "replication", 1.0, 1 + TINY),
-    ({}, "hazard", 0.0, -TINY),
-    ({}, "hazard", 1.0, 1 + TINY),
-    ({}, "cells", 2, 1),
-    ({}, "seeds", 1, 0),
-    ({}, "saturation_ticks", 1, 0),
-    ({}, "saturation_ticks", 2**31 - 1, 2**31),
-    ({}, "sample_every", 1, 0),
-    ({}, "sample_every", 2**31 - 1, 2**31),
-    ({}, "stop.ticks", 1, 0),
-    ({}, "stop.births", 1, 0),
 ]
 """settings that it needs, setting, a value that is accepted, a value that is refused"""
 

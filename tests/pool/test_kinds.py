@@ -85,13 +85,24 @@ def fails_to_load(pool: Pool) -> None:
     pool.load([b"\xff"] * 7)
 
 
-@pytest.mark.parametrize("fail", [fails_to_step, fails_to_load])
-def test_a_simulator_that_fails_is_one_line_of_trouble(fail: Callable[[Pool], None]) -> None:
+@pytest.mark.parametrize(
+    ("fail", "kind", "message"),
+    [
+        (fails_to_step, ValueError, "failed on request; "),
+        (fails_to_load, UnicodeDecodeError, "'utf-8' codec"),
+    ],
+)
+def test_a_simulator_that_fails_is_one_line_of_trouble_that_says_what_and_where(
+    fail: Callable[[Pool], None], kind: type[Exception], message: str
+) -> None:
     """`test_workers` has one in a worker."""
+    what, ends = f"{kind.__name__}: {message}", "resume the run from its last checkpoint$"
+    says = rf"{what}.*counters\.py, line \d+\).*{ends}"
     with closing(counters(0)) as pool:
         pool.reset(ALL)
-        with pytest.raises(Trouble, match=r"resume the run from its last checkpoint$") as trouble:
+        with pytest.raises(Trouble, match=says) as trouble:
             fail(pool)
+        assert isinstance(trouble.value.__cause__, kind)
         assert len(str(trouble.value).splitlines()) == 1
 
 
@@ -99,15 +110,6 @@ def test_a_simulator_that_cannot_be_made_is_trouble() -> None:
     """`test_workers` has one in a worker."""
     with pytest.raises(Trouble):
         open_pool("tests.counters:Missing", {"start": 0}, FIELDS, 2, 0)
-
-
-def test_a_failure_in_this_process_says_what_and_where() -> None:
-    pool = counters(0)
-    with pytest.raises(
-        Trouble, match=r"ValueError: failed on request; .*counters\.py, line \d+\)"
-    ) as trouble:
-        fails_to_step(pool)
-    assert isinstance(trouble.value.__cause__, ValueError)
 
 
 OWN = "class Own:\n    def __init__(self, arrays):\n        arrays['mark'][:] = {number}\n    def make(self, cell):\n        pass\n"  # noqa: E501

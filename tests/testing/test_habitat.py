@@ -7,7 +7,6 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from jax import Array
-from PIL import Image
 
 from primordia.config import load
 from primordia.habitats import Compound, Continuous, Discrete, HostHabitat, JaxHabitat, Outcome
@@ -217,8 +216,8 @@ class Scored(Wagon):
         return self.place.astype(np.int32)
 
 
-class Shown(Scored):
-    """It saves its counts and can be drawn, so it keeps the contract."""
+class Scribble(Scored):
+    """It saves its counts, as it must, and its pictures are all that is wrong."""
 
     def save(self) -> dict[str, np.ndarray]:
         return {**super().save(), "tally": self.tally()}
@@ -226,11 +225,6 @@ class Shown(Scored):
     def seen(self) -> np.ndarray:
         return self.place
 
-    def picture(self, body: Any, action: np.ndarray) -> Any:
-        return Image.new("RGB", (1, 1))
-
-
-class Scribble(Shown):
     def picture(self, body: Any, action: np.ndarray) -> Any:
         return "a picture"
 
@@ -303,10 +297,10 @@ def test_a_habitat_with_a_fault(habitat: Any, says: str) -> None:
         check_habitat(habitat)
 
 
-@pytest.mark.parametrize("habitat", [Pair(), Shown()])
-def test_habitats_that_keep_their_contract(habitat: Any) -> None:
-    """One in JAX with an action of several parts, and one on the host with counts and pictures."""
-    check_habitat(habitat)
+def test_a_habitat_in_jax_with_an_action_of_several_parts_keeps_its_contract() -> None:
+    """On the host, `tests.habitats.test_gymnasium_lives` has habitats that keep it. The last check of all
+    is that of pictures, which finds a fault above and none in `tests.testing.test_lives`."""
+    check_habitat(Pair())
 
 
 class Unshared(JaxHabitat):
