@@ -39,16 +39,24 @@ def name(page: Path) -> str:
 
 
 SMALL = ("--cells", 8, "--hazard", 0.002)
-"""The law of other tests, whose code is compiled already."""
+SHOWN = ("README", "install", "settings")
+"""Pages that `make test` follows in the law of other tests. Slow tests follow all to the letter."""
 WITH_BLOCKS = [
     pytest.param(page, id=name(page), marks=pytest.mark.slow if page.stem == "gymnax" else ())
     for page in PAGES
     if blocks(page)
 ]
 FOLLOWED = [
-    pytest.param(page, id=name(page))
-    for page in PAGES
-    if blocks(page) and page.stem not in RECIPES  # `tests/test_recipes.py` follows those
+    *(
+        pytest.param(page, SMALL, id=f"{name(page)} with few cells")
+        for page in PAGES
+        if page.stem in SHOWN
+    ),
+    *(
+        pytest.param(page, (), id=name(page), marks=pytest.mark.slow)
+        for page in PAGES
+        if blocks(page) and page.stem not in RECIPES  # `tests/test_recipes.py` follows those
+    ),
 ]
 
 
@@ -71,7 +79,9 @@ def try_out(kind: str, text: str, where: Path, law: tuple[object, ...] = ()) -> 
     if kind == "sh":
         for line in text.splitlines():
             program, *words = shlex.split(line, comments=True) or [""]
-            if program not in ("make", ""):  # `make -n` is tried for each page by itself
+            if program == "make":
+                run(["make", "-n", "-C", str(HERE), *words], where)
+            elif program:
                 assert program == "primordia", line
                 done = commands.here(*words, *(law if words[0] == "run" else ()))
                 assert done.returncode == 0, f"{line}\n{done.stdout}{done.stderr}"
@@ -113,8 +123,6 @@ def test_every_command_and_block_of_a_page_is_well_formed(page: Path, tmp_path: 
                 assert program in ("primordia", "make", ""), line
                 if program == "primordia":
                     commands.well_formed(*words)
-                elif program:
-                    run(["make", "-n", "-C", str(HERE), *words], tmp_path)
         elif kind == "python":
             assert_names_exist(text)
         elif kind == "toml":
@@ -131,12 +139,13 @@ def assert_names_exist(program: str) -> None:
                     import_module(f"{node.module}.{each.name}")
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("page", FOLLOWED)
-def test_every_command_and_block_of_a_page_works(page: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("page", "law"), FOLLOWED)
+def test_every_command_and_block_of_a_page_works(
+    page: Path, law: tuple[object, ...], tmp_path: Path
+) -> None:
     """Commands and Python run in this process, for speed."""
     for kind, text in blocks(page):
-        try_out(kind, text, tmp_path)
+        try_out(kind, text, tmp_path, law)
 
 
 def test_no_sentence_goes_on_as_an_item_of_a_list() -> None:
