@@ -1,4 +1,4 @@
-"""Golden digests: small runs of all tasks live as they did when `goldens.json` was made."""
+"""Golden digests: small runs of all tasks and of all parts of the law live as they did once."""
 
 import json
 from collections.abc import Iterable
@@ -46,7 +46,7 @@ LAWS = marked([*placements(), *others()], set())
 
 
 @pytest.mark.parametrize("name", [*marked(tasks(), SHOWN), *LAWS])
-def test_each_task_lives_as_it_did(name: str, tmp_path: Path) -> None:
+def test_each_case_lives_as_it_did(name: str, tmp_path: Path) -> None:
     assert_lives_as_it_did(name, tmp_path)
 
 

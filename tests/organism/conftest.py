@@ -17,7 +17,7 @@ CLOCKED = {"name": "tests.toys:Clocked", "inner": "mill"}
 
 @pytest.fixture(scope="package", autouse=True)
 def _short_stretches() -> Iterator[None]:
-    """Live lives again in short stretches, so that most lives take several."""
+    """Live lives on the host again in short stretches, so that most lives take several."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(LifeOnHost, "TICKS", 20)
         yield

@@ -91,7 +91,7 @@ def test_the_lives_of_one_world_are_taken_alone(lives: Lives) -> None:
     ("world", "says"),
     [(1, "nothing was born in world 1"), (3, "there is no world 3; the worlds are 0 to 2")],
 )
-def test_a_world_without_a_birth_has_no_oldest(lives: Lives, world: int, says: str) -> None:
+def test_only_worlds_with_a_birth_have_an_oldest(lives: Lives, world: int, says: str) -> None:
     with pytest.raises(InputError, match=f"^{says}$"):
         lives.oldest(world)
 

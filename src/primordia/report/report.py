@@ -28,7 +28,7 @@ def report(shown: Records | Campaign, out: Path | None = None) -> Path:
     if out is None:
         bundle.refuse_changes(shown.path)
     path = out if out is not None else shown.path / NAME
-    if path.suffix not in (".html", ".htm"):
+    if path.suffix != ".html":
         raise InputError(f"--out {path}: the file of a report must end with .html")
     if out is None and not shown.path.is_dir():
         raise InputError(
