@@ -29,7 +29,7 @@ ANYWHERE: dict[str, tuple[Any, dict[str, Any]]] = {
     "poles": ("CartPole-survival", {**POLES, "cells": 256}),
     "strange": (STRANGE, {}),
 }
-"""Some poles are so many that several threads would share a matrix among them."""
+"""256 poles are one large batch, which several threads would share."""
 
 
 def anywhere(name: str, **seeds: int) -> Lived:

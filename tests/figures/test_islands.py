@@ -1,11 +1,12 @@
 """Figures of islands: lives after transplants, generalists, islands over time, borders."""
 
 from dataclasses import replace
+from itertools import combinations
 from typing import Any
 
 import numpy as np
 import pytest
-from matplotlib.colors import to_hex
+from matplotlib.colors import to_hex, to_rgb
 from matplotlib.text import Annotation
 
 from primordia.assays.generalists import Ancestor, Generalists
@@ -96,12 +97,15 @@ def test_generalists_are_drawn_by_home_and_their_line_by_island() -> None:
 
 
 def test_islands_have_colours_of_their_own() -> None:
-    for count in (6, 7):
+    """Those of neighbours can be told apart: red, green and blue run from 0 to 1."""
+    for count in (6, 8):
         names = [f"island-{k}" for k in range(count)]
         colours = style.island_colours(names)
         assert list(colours) == names
         assert len({*colours.values()}) == count
         assert all(colour == to_hex(colour) for colour in colours.values())
+        shades = [np.array(to_rgb(colour)) for colour in colours.values()]
+        assert min(np.linalg.norm(a - b) for a, b in combinations(shades, 2)) > 0.25
 
 
 def seen(lives: Lives) -> Any:

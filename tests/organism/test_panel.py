@@ -107,7 +107,7 @@ def test_the_past_is_drawn_up_to_the_present_age_and_on_one_scale() -> None:
 def test_without_fast_weights_the_past_is_that_of_the_outputs(
     life: RelivedLife, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Outputs are drawn as bars of theirs. The brain puts out given numbers and shows nothing else."""
+    """The brain here puts out given numbers and shows nothing else."""
     output = np.linspace(-3, 3, 64, dtype=np.float32).reshape(32, 2)
     panels, stretch = Panels(life, [range(1, 6)], 5), next(life.stretches())
     monkeypatch.setattr(panel, "shared", lambda *_: lambda *given: (given[1], (output, {})))
