@@ -1,27 +1,20 @@
-"""Set-up of all tests: JAX, Hypothesis, and a shared cache of compiled code."""
+"""Set-up of all tests: Hypothesis, the order of tests, and fixtures, which are in `fixtures.py`."""
 
 import gc
-import os
 from collections import defaultdict
-from collections.abc import Iterator
-from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
-import jax
 import pytest
 from hypothesis import HealthCheck, settings
 
-from primordia import compiled, device
-from primordia.doctor import memo
-from primordia.figures import style
-from primordia.history import pedigree
-from primordia.organism.playing import in_jax
-from primordia.organism.reliving import relived
-from primordia.organism.reliving.in_jax import LifeInJax
-from tests import commands
 
-device.prepare()
+def pytest_configure(config: pytest.Config) -> None:
+    """Prepare JAX and the fixtures, but not in a process that only hands tests to others.
+
+    The others start after it, and the imports take two seconds.
+    """
+    if hasattr(config, "workerinput") or not config.getoption("numprocesses", None):
+        config.pluginmanager.import_plugin("tests.fixtures")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -43,84 +36,9 @@ def pytest_collection_finish() -> None:
     gc.set_threshold(50_000, 20, 1_000)
 
 
-# Processes that tests start, and workers that those start, import this tree, whatever is installed.
-os.environ["PYTHONPATH"] = commands.TREE
-
 # A slow test is not a wrong test: the machine may be busy, and garbage collection takes up to 0.3 s.
 # Each run of the tests generates other examples.
 settings.register_profile(
     "patient", deadline=None, max_examples=25, suppress_health_check=[HealthCheck.too_slow]
 )
 settings.load_profile("patient")
-
-
-@pytest.fixture(autouse=True, scope="session")
-def _compiled_code(tmp_path_factory: pytest.TempPathFactory) -> None:
-    """Share one cache of compiled code among all test processes, and all processes that they start.
-
-    It is kept for the next time if JAX_COMPILATION_CACHE_DIR names a folder.
-    """
-    root = tmp_path_factory.getbasetemp()
-    shared = root.parent if root.name.startswith("popen") else root
-    cache = os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(shared / "compiled"))
-    jax.config.update("jax_compilation_cache_dir", cache)
-    jax.config.update("jax_persistent_cache_min_compile_time_secs", 0)
-    os.environ["JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS"] = "0"
-    # With a limit, which commands set, JAX writes nothing into a folder that has entries of a process
-    # without one: each command then compiled everything again.
-    os.environ["JAX_COMPILATION_CACHE_MAX_SIZE"] = "-1"
-    os.environ["XDG_STATE_HOME"] = str(shared / "state")
-    os.environ["XDG_CACHE_HOME"] = str(shared / "cache")
-    memo.remember(passed=True)
-
-
-@pytest.fixture(autouse=True, scope="session")
-def _one_size() -> Iterator[None]:
-    """Repeat births, play games and live again in calls of one size, since each size is compiled.
-
-    `test_batches`, `test_playing` and `test_panel` have other sizes.
-    """
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(in_jax, "FEWEST", 64)
-        for name in ("FEW", "AT_ONCE"):
-            patch.setattr(pedigree, name, 32)
-        patch.setattr(LifeInJax, "TICKS", relived.SHORT)  # the size of the lives of ancestors
-        yield
-
-
-@pytest.fixture(autouse=True, scope="session")
-def kept_by_users() -> int:
-    """Keep more compiled functions than the process of a user does, whose number is returned.
-
-    They are kept to the end of the process, since it takes seconds to free them.
-    """
-    most: int = compiled._kept.cache_parameters()["maxsize"]
-    compiled._kept = lru_cache(2 * most)(compiled._jitted)
-    return most
-
-
-@pytest.fixture(autouse=True, scope="session")
-def _for_users() -> Iterator[dict[str, Any]]:
-    """Save figures with few dots and without a layout that makes room, which take most of the time.
-
-    Yields:
-        the parameters of users.
-    """
-    users = dict(style.PARAMETERS)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(style.PARAMETERS, "savefig.dpi", 60)
-        patch.setitem(style.PARAMETERS, "figure.constrained_layout.use", False)
-        yield users
-
-
-@pytest.fixture
-def _laid_out(_for_users: dict[str, Any], monkeypatch: pytest.MonkeyPatch) -> None:
-    """Draw figures as for a user."""
-    monkeypatch.setattr(style, "PARAMETERS", _for_users)
-
-
-@pytest.fixture
-def _killed(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Give processes that are killed a cache of their own, since they may be writing into it."""
-    folder = tmp_path_factory.getbasetemp() / "compiled by the killed"
-    monkeypatch.setenv("JAX_COMPILATION_CACHE_DIR", str(folder))
