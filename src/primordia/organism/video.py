@@ -6,7 +6,6 @@ from functools import partial
 from itertools import chain, starmap
 from pathlib import Path
 
-import av
 import numpy as np
 from PIL import Image
 
@@ -65,6 +64,8 @@ def sample_of(picture: Image.Image, *strips: np.ndarray) -> Image.Image:
 
 def _mp4(path: Path, pictures: Iterator[Image.Image], rate: float) -> None:
     """Write H.264 in yuv420p, which browsers and slides play."""
+    import av  # a tenth of a second, which commands without a video need not wait
+
     first = next(pictures)
     with av.open(str(path), "w") as container:
         stream = container.add_stream("libx264", rate=Fraction(rate).limit_denominator(1_000_000))
