@@ -27,7 +27,9 @@ def replace_measurement(monkeypatch: pytest.MonkeyPatch, **found: Any) -> None:
             "info": {},
         },
         simulator=SimpleNamespace(limits=found.pop("limits", [])),
-        senses=SimpleNamespace(unbounded=lambda: np.array([True, True, False])),
+        senses=SimpleNamespace(
+            unbounded=lambda: np.array([True, True, False]), grid=found.pop("grid", None)
+        ),
     )
     monkeypatch.setattr(task, "make", lambda *given: habitat)
     monkeypatch.setattr(task, "Gymnax", SimpleNamespace)
@@ -61,6 +63,10 @@ def test_the_facts_of_an_environment_have_its_figures(
     _, facts, _ = task.task.__wrapped__("any:Env")
     assert facts[4].startswith("The environment's time limit (max_steps, max_time) is off;")
     assert facts[6].startswith("None of 32 lives ended in 500 ticks of random play:")
+    replace_measurement(monkeypatch, grid=(10, 8, 6))
+    _, facts, _ = task.task.__wrapped__("any:Env")
+    assert facts[1].startswith("It is a grid of 10 x 8 cells with 6 channels.")
+    assert "centre = 0 and sight = 2" in facts[1]
 
 
 @pytest.mark.parametrize(

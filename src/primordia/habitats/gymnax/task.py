@@ -41,8 +41,10 @@ def _facts(habitat: Gymnax, found: Measured) -> list[str]:
     choice = isinstance(action, Discrete)
     what = f"one of {action.size}" if choice else counted(action.size, "number")
     limits = ", ".join(habitat.simulator.limits)
+    grid = habitat.senses.grid
     return [
         f"Observation: {named['obs']} numbers, obs[0] to obs[{named['obs'] - 1}] in conditions.",
+        *([_around(grid)] if grid and grid[2] > 1 else []),
         f"Action: {what}.",
         *(f"Numbers in {part}: {_listed(part, named[part])}." for part in ("state", "info")),
         f"The environment's time limit ({limits}) is off; time_limit = true turns the limit on."
@@ -54,6 +56,14 @@ def _facts(habitat: Gymnax, found: Measured) -> list[str]:
         else f"None of {BODIES} lives ended in {TICKS} ticks of random play: set `fatal` to a condition,"
         " or add a metabolism.",
     ]
+
+
+def _around(grid: tuple[int, ...]) -> str:
+    height, width, channels = grid
+    return (
+        f"It is a grid of {height} x {width} cells with {channels} channels. If channel 0 shows the"
+        " player, centre = 0 and sight = 2 let it perceive only the 5 x 5 cells around itself."
+    )
 
 
 def _listed(part: str, kinds: dict[str, Any]) -> str:
