@@ -4,7 +4,8 @@
 
 Nothing has to be run before. Each player plays GAMES games of at most TICKS ticks: in Breakout one stays
 under the ball, with and without sticky actions, and another goes where the ball will be in the next tick;
-in Freeway one always goes up. The table goes to `experiments/skill/results/minatar-handmade`.
+in Space Invaders one shoots, and steps aside of bullets that it sees; in Freeway one always goes up.
+The table goes to `experiments/skill/results/minatar-handmade`.
 """
 
 from collections.abc import Callable
@@ -21,10 +22,11 @@ from primordia.comparison.tables import spread_text
 from primordia.experiments.results import table
 
 GAMES = 200
-TICKS = {"Breakout": 1_000, "Freeway": 2_500}
+TICKS = {"Breakout": 1_000, "Freeway": 2_500, "SpaceInvaders": 1_000}
 """Length of a game, which is the environment's own."""
 PADDLE, BALL, TRAIL = range(3)
-NOOP, LEFT, RIGHT = range(3)
+EDGE, BULLET = 0, 5
+NOOP, LEFT, RIGHT, SHOOT = range(4)
 UP = 1
 RESULTS = Path(__file__).parent / "skill" / "results" / "minatar-handmade"
 
@@ -52,6 +54,14 @@ def follow(senses: jax.Array, ahead: bool = False) -> jax.Array:
     return jnp.where(aim < paddle, LEFT, jnp.where(aim > paddle, RIGHT, NOOP)).astype(jnp.int32)
 
 
+def dodge(senses: jax.Array) -> jax.Array:
+    """Return the button that shoots, or leaves the column of a bullet within two cells, int32 (N,)."""
+    view = senses.reshape(-1, 5, 5, 6)
+    danger = view[:, :2, 2, BULLET].any(1)
+    blocked = (view[:, 2, 1, EDGE] + view[:, 1, 1, BULLET]) > 0
+    return jnp.where(danger, jnp.where(blocked, RIGHT, LEFT), SHOOT).astype(jnp.int32)
+
+
 def up(senses: jax.Array) -> jax.Array:
     """Return the button that goes up, int32 (N,)."""
     return jnp.full(len(senses), UP, jnp.int32)
@@ -61,6 +71,7 @@ PLAYERS: tuple[tuple[str, str, float, Callable], ...] = (
     ("stays under the ball", "Breakout", 0.1, follow),
     ("goes where the ball will be", "Breakout", 0.1, partial(follow, ahead=True)),
     ("stays under the ball, nothing sticks", "Breakout", 0.0, follow),
+    ("shoots, and steps aside", "SpaceInvaders", 0.1, dodge),
     ("always goes up", "Freeway", 0.1, up),
 )
 
@@ -78,7 +89,7 @@ def main() -> None:
         spreads = (spread_text(each.tolist()) for each in (lived, score))
         lines.append([name, game, f"{sticky:g}", *spreads])
     head = ["player", "game", "sticky", "lifespan", "score"]
-    note = f"Medians (quartiles) of {GAMES} games. Hunger is off in Freeway."
+    note = f"Medians (quartiles) of {GAMES} games. Hunger is off."
     write_rows(RESULTS, rows, f"{table(head, lines)}\n\n{note}")
 
 

@@ -31,6 +31,7 @@ UNKEPT = re.compile(r"no\s+table\s+is\s+kept|kept\s+nowhere\s+else")
 KNOWN = {
     **dict.fromkeys(("65,536", "4.32"), "the table of Gaussian quantiles"),
     **dict.fromkeys(("102,000", "225"), "figures of the paper"),
+    "512": "the founders among which an assay chooses",
     "2.4": "CartPole's track, in the published code",
     "65,210": "the tick at which the clock of Pong's console comes round",
     "7,141": "the ticks of a round of Boxing",
