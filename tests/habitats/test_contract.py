@@ -142,6 +142,11 @@ def test_a_plain_habitat_has_the_defaults() -> None:
     assert HostCartPole().seen() is None
 
 
+def test_a_caption_names_the_button_if_buttons_have_names(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Meadow, "buttons", ("noop", "fire"), raising=False)
+    assert Meadow().caption(None, np.int32(1)) == "button fire"
+
+
 @pytest.mark.parametrize(
     ("name", "options"), [("Plain", {}), ("Configured", {"episode": 500}), ("SettingsFirst", {})]
 )

@@ -1,12 +1,15 @@
 """Pictures of environments in JAX: grids of colours, or bars."""
 
 import colorsys
+from typing import Any
 
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
 from primordia.habitats.framed import MARGIN
-from primordia.habitats.gymnax.picture import BAR, GROUND, WIDTH, draw
+from primordia.habitats.gymnax.picture import BAR, GROUND, WIDTH, draw, draw_view
+from primordia.habitats.gymnax.spaces import View
 
 
 def test_a_cell_of_a_grid_has_the_colour_of_its_last_channel_that_is_not_zero() -> None:
@@ -45,3 +48,40 @@ def test_a_sense_is_a_bar_from_the_middle_up_or_down(count: int) -> None:
     above, below = (np.flatnonzero(part.any(axis=0)) for part in (bar[:middle], bar[middle + 1 :]))
     assert (above.min(), above.max()) == (0, max(round(0.8 * each) - 1, 0))
     assert (below.min(), below.max()) == (round(each), max(round(1.8 * each) - 1, round(each)))
+
+
+class Meadow:
+    """An environment whose state is its observation."""
+
+    def observe(self, key: Any, state: Any, action: Any, params: Any) -> Any:
+        return state
+
+
+class Legacy:
+    """An environment whose states cannot be observed again."""
+
+    def observe(self, key: Any, state: Any, action: Any, params: Any) -> Any:
+        raise NotImplementedError
+
+
+@pytest.mark.parametrize(
+    ("player", "first", "last"), [((3, 4), (40, 80), (239, 279)), ((9, 0), (280, 0), (399, 119))]
+)
+def test_a_picture_of_a_view_is_the_whole_grid_with_a_frame_around_what_is_perceived(
+    player: tuple[int, int], first: tuple[int, int], last: tuple[int, int]
+) -> None:
+    """The frame is 4 pixels wide. At the border of the grid it goes on outside the picture."""
+    grid, view = np.zeros((10, 10, 2), np.float32), View((10, 10, 2), 0, 2)
+    grid[*player, 0] = grid[8, 8, 1] = 1
+    whole = np.asarray(draw(grid.ravel(), grid.shape))[MARGIN:]
+    framed = draw_view(Meadow(), jnp.asarray(grid), None, view)
+    assert framed is not None
+    changed = (np.asarray(framed)[MARGIN:] != whole).any(axis=2)
+    places = np.argwhere(changed)
+    assert (tuple(places.min(axis=0)), tuple(places.max(axis=0))) == (first, last)
+    assert not changed[first[0] + 4 : last[0] - 3, 84 if first[1] else 0 : last[1] - 3].any()
+
+
+@pytest.mark.parametrize("env", [object(), Legacy()])
+def test_there_is_no_picture_of_a_view_if_a_state_cannot_be_observed_again(env: Any) -> None:
+    assert draw_view(env, np.zeros((3, 3, 1)), None, View((3, 3, 1), 0, 1)) is None

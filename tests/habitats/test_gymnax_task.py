@@ -63,10 +63,19 @@ def test_the_facts_of_an_environment_have_its_figures(
     _, facts, _ = task.task.__wrapped__("any:Env")
     assert facts[4].startswith("The environment's time limit (max_steps, max_time) is off;")
     assert facts[6].startswith("None of 32 lives ended in 500 ticks of random play:")
-    replace_measurement(monkeypatch, grid=(10, 8, 6))
+
+
+@pytest.mark.parametrize(
+    ("grid", "said"), [((10, 8, 6), True), ((10, 5, 1), False), ((4, 64, 32), False)]
+)
+def test_the_facts_say_how_players_of_a_grid_perceive_what_is_near(
+    monkeypatch: pytest.MonkeyPatch, grid: tuple[int, ...], said: bool
+) -> None:
+    """A matrix has no channel of its own for the player, and frames one behind the other are no grid."""
+    replace_measurement(monkeypatch, grid=grid)
     _, facts, _ = task.task.__wrapped__("any:Env")
-    assert facts[1].startswith("It is a grid of 10 x 8 cells with 6 channels.")
-    assert "centre = 0 and sight = 2" in facts[1]
+    assert ("The observation is a grid of 10 x 8 cells with 6 channels." in facts[1]) == said
+    assert ("sight = 2" in facts[1]) == said
 
 
 @pytest.mark.parametrize(

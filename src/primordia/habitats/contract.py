@@ -204,6 +204,8 @@ class Habitat(ABC):
 
     def caption(self, body: Bodies, action: np.ndarray) -> str:
         """Return the second line of a picture's captions, such as the action's name and a score."""
+        if self.buttons:
+            return f"button {self.buttons[int(action)]}"
         return f"action {np.array2string(np.asarray(action), precision=2)}"
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from fractions import Fraction
 from functools import partial
-from itertools import chain, starmap
+from itertools import chain, product, starmap
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +12,8 @@ from PIL import Image
 from primordia import files
 from primordia.errors import InputError
 
+WEB = list(product(range(0, 256, 51), repeat=3))
+"""Colours of the web: a cube of 6 x 6 x 6."""
 FASTEST = {".mp4": 60, ".gif": 25}
 """Highest number of pictures in a second, by suffix; a GIF counts time in hundredths of a second."""
 
@@ -81,14 +83,19 @@ def _mp4(path: Path, pictures: Iterator[Image.Image], rate: float) -> None:
 def _gif(
     path: Path, pictures: Iterator[Image.Image], rate: float, sample: Image.Image | None
 ) -> None:
-    """Write a GIF of half the size, with the colours of the sample, or of the first picture.
+    """Write a GIF of half the size, with the colours of the sample, or those of the first picture and
+    the 216 of the web, since later pictures may have others.
 
     A GIF counts time in hundredths of a second, so pictures take turns in being shown one longer.
     """
     first = next(pictures)
     palette = (sample or first).quantize(
-        colors=256 if sample else 64, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE
+        colors=256 if sample else 256 - len(WEB),
+        method=Image.Quantize.MEDIANCUT,
+        dither=Image.Dither.NONE,
     )
+    if not sample:
+        palette.putpalette([*(palette.getpalette() or ()), *sum(WEB, ())])
 
     def small(number: int, picture: Image.Image) -> Image.Image:
         reduced = picture.reduce(2).quantize(palette=palette, dither=Image.Dither.NONE)

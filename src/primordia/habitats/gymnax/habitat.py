@@ -147,12 +147,18 @@ class Gymnax(JaxHabitat, Settings):
         return Gymnax(**{**self.model_dump(), **changed})
 
     def picture(self, body: Body, action: np.ndarray) -> "Image":
-        """Return a picture drawn by the environment's library, or else a picture of the body's senses."""
-        from primordia.habitats.gymnax.picture import draw, rendered
+        """Return a picture drawn by the environment's library, or else a picture of the body's senses.
+
+        If a player perceives a part of a grid, the picture shows the whole grid, with a frame around
+        this part.
+        """
+        from primordia.habitats.gymnax.picture import draw, draw_view, rendered
 
         about, packed = self.simulator, body.packed
         state = packed.state(self.senses_size, about.example.state)
         drawn = rendered(about.env, state, about.params)
+        if drawn is None and (view := self.senses.view):
+            drawn = draw_view(about.env, state, about.params, view)
         return drawn or draw(np.asarray(packed.senses(self.senses_size)), self.senses.grid)
 
     def reset(self, words: Array) -> Body:

@@ -1,6 +1,7 @@
 """Pictures of bodies, drawn by the environment's library, or else pictures of the bodies' senses.
 
-A grid has a colour for each channel; other senses have a bar each.
+A grid has a colour for each channel, and a frame around the cells that the player perceives; other
+senses have a bar each.
 """
 
 import colorsys
@@ -15,6 +16,7 @@ from PIL import Image, ImageDraw
 
 from primordia.habitats.framed import PAPER, framed
 from primordia.habitats.gymnax.playground import Playground
+from primordia.habitats.gymnax.spaces import View
 from primordia.habitats.mujoco.picture import Renderer
 from primordia.habitats.silence import quiet, silent
 
@@ -22,6 +24,8 @@ WIDTH = 400
 """pixels of the longer side of a grid, and smallest width of a row of bars"""
 GROUND = np.array([24, 26, 32])
 BAR, AXIS = "#23395b", "#8a8a8a"
+FRAME = 4
+"""pixels of the line around what a player perceives"""
 BLOCK = 64
 """pixels of a block of Craftax, one of the sizes that it draws"""
 
@@ -65,6 +69,36 @@ def _framed(pixels: Any) -> Image.Image:
 def draw(senses: np.ndarray, grid: tuple[int, ...] | None) -> Image.Image:
     """Return a picture of senses (S,) as a `grid` (height, width, channels), or as bars if it is None."""
     return framed(_coloured(senses.reshape(grid)) if grid else _bars(senses))
+
+
+def draw_view(env: Any, state: Any, params: Any, view: View) -> Image.Image | None:
+    """Return a picture of the whole grid, with a frame around the cells that the player perceives.
+
+    None if the environment lacks gymnax's method `observe`, since bodies keep only what is perceived.
+    """
+    try:
+        grid = _observing(env)(state, params)
+    except (AttributeError, NotImplementedError):
+        return None
+    picture, reach = _coloured(np.asarray(grid)), view.sight
+    zoom = picture.width // grid.shape[1]
+    row, column = map(int, view.place(grid))
+    corners = (column - reach, row - reach, column + reach + 1, row + reach + 1)
+    left, top, right, bottom = (zoom * corner for corner in corners)
+    box = (left, top, right - 1, bottom - 1)
+    ImageDraw.Draw(picture).rectangle(box, outline=PAPER, width=FRAME)
+    return framed(picture)
+
+
+@lru_cache(maxsize=8)
+def _observing(env: Any) -> Callable[[Any, Any], Any]:
+    """Return a function of a state and parameters that returns the observation, float32.
+
+    Raises:
+        AttributeError: the environment has no such method.
+    """
+    key, observe = np.zeros(2, np.uint32), env.observe
+    return jax.jit(lambda state, params: observe(key, state, None, params).astype(np.float32))
 
 
 def _coloured(cells: np.ndarray) -> Image.Image:

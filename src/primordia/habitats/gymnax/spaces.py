@@ -68,7 +68,7 @@ class Senses:
         leaves = jax.tree.leaves(example)
         self.size = self._choices or sum(int(np.prod(leaf.shape)) for leaf in leaves)
         self.grid = _grid(leaves[0].shape) if len(leaves) == 1 else None
-        """(height, width, channels) of an observation that is a grid"""
+        """(height, width, channels) of senses that are a grid"""
         low, high = (getattr(space, name, None) for name in ("low", "high"))
         if low is None or high is None or len(leaves) != 1:
             low, high = -np.inf, np.inf
@@ -76,10 +76,10 @@ class Senses:
             low, high = 0, self._choices - 1
         self._low, self._high = (np.float32(each).ravel() for each in (low, high))
         bounded, middle, half = _bounds(low, high, leaves[0].shape)
-        self._view: View | None = None
-        if centre is not None:
-            self._view = View(self.grid, centre, sight)
-            self.grid = self._view.shape
+        self.view = View(self.grid, centre, sight) if centre is not None else None
+        """what is perceived around the player of a grid; None: the whole observation"""
+        if self.view:
+            self.grid = self.view.shape
             self.size = int(np.prod(self.grid))
         self._unbounded = ~bounded
         scaled = bounded & (np.abs(middle) + half > 1) & (half > 0)
@@ -99,7 +99,7 @@ class Senses:
             flat = (flat - self._middle) * self._scale
         if self._squash:
             flat = jnp.where(self._unbounded, flat / (1 + jnp.abs(flat)), flat)
-        return self._view.of(flat) if self._view else flat
+        return self.view.of(flat) if self.view else flat
 
     def declared(self, observed: Array) -> Array:
         """Return whether observations, float32 (N, S), are in their space, bool (N,)."""
@@ -127,14 +127,18 @@ class View:
         if grid is None or not 0 <= centre < grid[2]:
             raise ValueError(f"centre: the observations are no grid with a channel {centre}")
         self._grid, self._centre = grid, centre
-        self._sight = max(grid[:2]) - 1 if sight is None else sight
-        self.shape = (*[2 * self._sight + 1] * 2, grid[2])
+        self.sight = max(grid[:2]) - 1 if sight is None else sight
+        self.shape = (*[2 * self.sight + 1] * 2, grid[2])
+
+    def place(self, grid: Array) -> tuple[Array, Array]:
+        """Return the player's row and column in a grid (height, width, channels)."""
+        return divmod(jnp.argmax(grid[..., self._centre]), self._grid[1])
 
     def of(self, flat: Array) -> Array:
         """Return the senses of one body, float32 (size,), from all numbers of its grid."""
         grid = flat.reshape(self._grid)
-        row, column = divmod(jnp.argmax(grid[..., self._centre]), self._grid[1])
-        wide = [(self._sight, self._sight)] * 2
+        row, column = self.place(grid)
+        wide = [(self.sight, self.sight)] * 2
         around = jnp.pad(grid, [*wide, (0, 0)])
         outside = jnp.pad(jnp.zeros(self._grid[:2], flat.dtype), wide, constant_values=1)
         around = around.at[..., self._centre].set(outside)

@@ -44,7 +44,7 @@ def _facts(habitat: Gymnax, found: Measured) -> list[str]:
     grid = habitat.senses.grid
     return [
         f"Observation: {named['obs']} numbers, obs[0] to obs[{named['obs'] - 1}] in conditions.",
-        *([_around(grid)] if grid and grid[2] > 1 else []),
+        *([_around(grid)] if grid and 1 < grid[2] <= min(grid[:2]) else []),
         f"Action: {what}.",
         *(f"Numbers in {part}: {_listed(part, named[part])}." for part in ("state", "info")),
         f"The environment's time limit ({limits}) is off; time_limit = true turns the limit on."
@@ -61,8 +61,9 @@ def _facts(habitat: Gymnax, found: Measured) -> list[str]:
 def _around(grid: tuple[int, ...]) -> str:
     height, width, channels = grid
     return (
-        f"It is a grid of {height} x {width} cells with {channels} channels. If channel 0 shows the"
-        " player, centre = 0 and sight = 2 let it perceive only the 5 x 5 cells around itself."
+        f"The observation is a grid of {height} x {width} cells with {channels} channels. If one channel"
+        " shows the player and nothing else, centre (its number, from 0) and sight = 2 limit the senses"
+        " to the 5 x 5 cells around the player."
     )
 
 
