@@ -18,6 +18,7 @@ Markdown and CSV.
 import csv
 import io
 from pathlib import Path
+from statistics import fmean
 from typing import Any
 
 import named
@@ -82,7 +83,7 @@ def played(name: str, run: Records, group: Group) -> list[dict[str, Any]]:
 
 
 def worlds_of(standing: Standing, run: Records) -> list[dict[str, Any]]:
-    """Return a row for each world: its seed, and the median organism's median game."""
+    """Return a row for each world: its seed, the median organism's median game, and the mean score."""
     found = {name: standing.by_world(name) for name in OUTCOMES}
     outcomes = {name: of for name, of in found.items() if of}
     rows = []
@@ -91,7 +92,10 @@ def worlds_of(standing: Standing, run: Records) -> list[dict[str, Any]]:
         row = {"seed": int(run.world_seeds[world]), "organisms": len(each)}
         row |= {"organism": each[0].organism if standing.chosen_from > 1 else ""}
         row |= {"games": each[0].games, "distinct": max(one.distinct for one in each)}
-        rows.append(row | {name: round(of[world], 2) for name, of in outcomes.items()})
+        row |= {name: round(of[world], 2) for name, of in outcomes.items()}
+        if "score" in outcomes:  # published scores are means
+            row["mean score"] = round(fmean(one.to_dict()["score"]["median"] for one in each), 2)
+        rows.append(row)
     return rows
 
 

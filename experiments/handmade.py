@@ -4,7 +4,7 @@
 
 Nothing has to be run before. Each player plays GAMES games of at most TICKS ticks: in Breakout one stays
 under the ball, with and without sticky actions, and another goes where the ball will be in the next tick;
-in Space Invaders one shoots, and steps aside of bullets that it sees; in Freeway one always goes up.
+in Space Invaders one shoots, and dodges bullets that it sees; in Freeway one always goes up.
 The table goes to `experiments/skill/results/minatar-handmade`.
 """
 
@@ -71,7 +71,7 @@ PLAYERS: tuple[tuple[str, str, float, Callable], ...] = (
     ("stays under the ball", "Breakout", 0.1, follow),
     ("goes where the ball will be", "Breakout", 0.1, partial(follow, ahead=True)),
     ("stays under the ball, nothing sticks", "Breakout", 0.0, follow),
-    ("shoots, and steps aside", "SpaceInvaders", 0.1, dodge),
+    ("shoots, and dodges bullets", "SpaceInvaders", 0.1, dodge),
     ("always goes up", "Freeway", 0.1, up),
 )
 

@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, settings
 def pytest_configure(config: pytest.Config) -> None:
     """Prepare JAX and the fixtures, but not in a process that only hands tests to others.
 
-    The others start after it, and the imports take two seconds.
+    Processes that run tests start only after it, so its imports would cost two seconds.
     """
     if hasattr(config, "workerinput") or not config.getoption("numprocesses", None):
         config.pluginmanager.import_plugin("tests.fixtures")

@@ -43,7 +43,7 @@ KNOWN = {
     **dict.fromkeys(
         ("1,800", "3,589", "12,139", "787"), "reinforcement learning with robots, in tasks.md"
     ),
-    "131": "PPO in Space Invaders, in the table of gymnax",
+    "2,500": "the ticks of a game of Freeway in MinAtar",
     **dict.fromkeys(
         ("2,360", "15,820", "16,411", "17,367", "26,300", "37,800", "62,010", "98,235"),
         "papers that the table of BattleZone names",

@@ -231,6 +231,17 @@ def searched(name: str, method: str, way: str, outcome: str = "score") -> str:
     return Cell(spread_text(found)).median
 
 
+def ahead(name: str, arm: str, method: str, way: str) -> str:
+    """Return the share of pairs of a world and a search in which the world's living live longer, in per
+    cent; equal lives count half."""
+    if not _path(f"{name}-baselines", "csv").exists():
+        return MISSING
+    every = rows(f"{name}-baselines")
+    found = every[(every["who"] == method) & (every["way"] == way)]["lifespan"].to_numpy()
+    own = games(name, f"{arm}: all alive", way).to_numpy()[:, None]
+    return share(float((own > found).mean() + (own == found).mean() / 2), 1)
+
+
 def chosen(habitat: str) -> dict[str, config.Config]:
     """Return the settings of the tasks that come with the package in a habitat, by task."""
     own = (task for task, values in tasks().items() if values["habitat"]["name"] == habitat)
@@ -259,6 +270,7 @@ def pages() -> dict[Path, str]:
         budget=budget,
         planned=planned,
         searched=searched,
+        ahead=ahead,
         worlds=worlds,
         seeds=seeds,
         seeds_of_games=seeds_of_games,
