@@ -86,18 +86,20 @@ def test_a_task_has_the_grid_as_senses_and_the_versions_of_its_libraries() -> No
 
 
 @pytest.mark.parametrize(
-    ("name", "size"),
+    ("name", "view", "size"),
     [
-        ("CartPole-v1", (600, 400)),
-        pytest.param("Breakout-MinAtar", (400, 400), marks=pytest.mark.slow),
-        ("Catch-bsuite", (200, 400)),
-        pytest.param("Craftax-Classic-Symbolic-v1", (576, 576), marks=pytest.mark.slow),
+        ("CartPole-v1", {}, (600, 400)),
+        pytest.param("Breakout-MinAtar", {}, (400, 400), marks=pytest.mark.slow),
+        ("Catch-bsuite", {}, (200, 400)),
+        ("Catch-bsuite", {"centre": 0, "sight": 1}, (200, 400)),
+        pytest.param("Craftax-Classic-Symbolic-v1", {}, (576, 576), marks=pytest.mark.slow),
     ],
 )
 def test_a_life_is_drawn_by_its_library_or_as_it_is_sensed(
-    name: str, size: tuple[int, int], capfd: pytest.CaptureFixture[str]
+    name: str, view: dict[str, int], size: tuple[int, int], capfd: pytest.CaptureFixture[str]
 ) -> None:
-    habitat = Gymnax(env=name)
+    """Where a player perceives a part of a grid, the whole grid is drawn."""
+    habitat = Gymnax(env=name, **view)
     body = jax.tree.map(lambda leaf: np.asarray(leaf)[0], jax.jit(habitat.reset)(WORDS))
     picture = habitat.picture(body, np.int32(0))
     assert picture.size == (size[0], size[1] + MARGIN)

@@ -77,7 +77,7 @@ def draw_view(env: Any, state: Any, params: Any, view: View) -> Image.Image | No
     None if the environment lacks gymnax's method `observe`, since bodies keep only what is perceived.
     """
     try:
-        grid = _observing(env)(state, params)
+        grid = _observing(env)(state, params).reshape(view.grid)
     except (AttributeError, NotImplementedError):
         return None
     picture, reach = _coloured(np.asarray(grid)), view.sight

@@ -126,21 +126,21 @@ class View:
         """
         if grid is None or not 0 <= centre < grid[2]:
             raise ValueError(f"centre: the observations are no grid with a channel {centre}")
-        self._grid, self._centre = grid, centre
+        self.grid, self._centre = grid, centre
         self.sight = max(grid[:2]) - 1 if sight is None else sight
         self.shape = (*[2 * self.sight + 1] * 2, grid[2])
 
     def place(self, grid: Array) -> tuple[Array, Array]:
         """Return the player's row and column in a grid (height, width, channels)."""
-        return divmod(jnp.argmax(grid[..., self._centre]), self._grid[1])
+        return divmod(jnp.argmax(grid[..., self._centre]), self.grid[1])
 
     def of(self, flat: Array) -> Array:
         """Return the senses of one body, float32 (size,), from all numbers of its grid."""
-        grid = flat.reshape(self._grid)
+        grid = flat.reshape(self.grid)
         row, column = self.place(grid)
         wide = [(self.sight, self.sight)] * 2
         around = jnp.pad(grid, [*wide, (0, 0)])
-        outside = jnp.pad(jnp.zeros(self._grid[:2], flat.dtype), wide, constant_values=1)
+        outside = jnp.pad(jnp.zeros(self.grid[:2], flat.dtype), wide, constant_values=1)
         around = around.at[..., self._centre].set(outside)
         return lax.dynamic_slice(around, (row, column, 0), self.shape).ravel()
 
