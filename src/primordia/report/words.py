@@ -54,7 +54,7 @@ def setting(config: Config) -> str:
     parts = [
         f"{about}{worlds} {config.cells:,} {WORLDS[config.placement.topology]}. In each cell lives"
         " at most one organism: a small neural network with its own simulated body.",
-        "There is no goal and no reward. An organism lives until its world kills it. Meanwhile"
+        "Nobody chooses which organisms go on. An organism lives until its world kills it. Meanwhile"
         f" the organism copies itself into {room} cell{taken}.",
     ]
     if config.islands.count > 1:
