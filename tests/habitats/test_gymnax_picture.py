@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from primordia.habitats.framed import MARGIN
-from primordia.habitats.gymnax.picture import BAR, GROUND, WIDTH, draw, draw_view
+from primordia.habitats.gymnax.picture import BAR, GROUND, WIDTH, draw, draw_view, rendered
 from primordia.habitats.gymnax.spaces import View
 
 
@@ -85,3 +85,16 @@ def test_a_picture_of_a_view_is_the_whole_grid_with_a_frame_around_what_is_perce
 @pytest.mark.parametrize("env", [object(), Legacy()])
 def test_there_is_no_picture_of_a_view_if_a_state_cannot_be_observed_again(env: Any) -> None:
     assert draw_view(env, np.zeros((3, 3, 1)), None, View((3, 3, 1), 0, 1)) is None
+
+
+class Painted:
+    """An environment that draws itself: its state is a shade of grey."""
+
+    def picture(self, state: Any, params: Any) -> Any:
+        return np.full((2, 3, 3), state + params)
+
+
+def test_an_environment_of_your_own_may_draw_its_pictures() -> None:
+    drawn = rendered(Painted(), 100, 20)
+    assert drawn is not None
+    assert np.asarray(drawn)[MARGIN:].tolist() == np.full((2, 3, 3), 120).tolist()
