@@ -11,6 +11,7 @@ The table goes to `experiments/skill/results/minatar-handmade`.
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -31,14 +32,15 @@ UP = 1
 RESULTS = Path(__file__).parent / "skill" / "results" / "minatar-handmade"
 
 
-def played(game: str, sticky: float, act: Callable) -> tuple[np.ndarray, np.ndarray]:
-    """Return the ticks and the score of each game, (GAMES,)."""
-    task = f"MinAtar-{game}-survival"
-    habitat = config.load(task, {"habitat": {"sticky": sticky}}).build_habitat()
+def played(
+    task: str, habitat_settings: dict[str, Any], ticks: int, act: Callable
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the ticks and the score of each game, (GAMES,); `act` gives buttons for senses (N, S)."""
+    habitat = config.load(task, {"habitat": habitat_settings}).build_habitat()
     words = np.random.default_rng(1000).integers(0, 2**32, (GAMES, 2), dtype=np.uint32)
     bodies, tick = habitat.reset(words), jax.jit(habitat.tick)
     alive, lived, score = np.ones(GAMES, bool), np.zeros(GAMES, int), np.zeros(GAMES)
-    for _ in range(TICKS[game]):
+    for _ in range(ticks):
         bodies, values = tick(bodies, act(habitat.sense(bodies)))
         score += alive * np.asarray(values["reward"])
         alive &= ~np.asarray(values["done"])
@@ -81,7 +83,8 @@ def main() -> None:
     device.prepare()
     rows, lines = [], []
     for name, game, sticky, act in PLAYERS:
-        lived, score = played(game, sticky, act)
+        task, habitat = f"MinAtar-{game}-survival", {"sticky": sticky}
+        lived, score = played(task, habitat, TICKS[game], act)
         rows += [
             {"player": name, "game": game, "sticky": sticky, "lifespan": int(a), "score": float(b)}
             for a, b in zip(lived, score, strict=True)
