@@ -36,6 +36,11 @@ def pytest_collection_finish() -> None:
     gc.set_threshold(50_000, 20, 1_000)
 
 
+def pytest_sessionfinish() -> None:
+    """Keep what is left: pytest looks for garbage several times at the end, which takes seconds."""
+    gc.freeze()
+
+
 # A slow test is not a wrong test: the machine may be busy, and garbage collection takes up to 0.3 s.
 # Each run of the tests generates other examples.
 settings.register_profile(

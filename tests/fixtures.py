@@ -58,6 +58,17 @@ def _one_size() -> Iterator[None]:
 
 
 @pytest.fixture(autouse=True, scope="session")
+def _no_waits_for_the_disk() -> Iterator[None]:
+    """Let the disk write when it will.
+
+    Processes that tests start do wait for it, and `test_power` notes each call.
+    """
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(os, "fsync", lambda handle: None)
+        yield
+
+
+@pytest.fixture(autouse=True, scope="session")
 def kept_by_users() -> int:
     """Keep more compiled functions than the process of a user does, whose number is returned.
 
