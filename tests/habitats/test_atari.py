@@ -41,7 +41,7 @@ def test_actions_are_those_that_the_settings_name(
             "combat is refused: the emulator has only a version for several",
         ),
         (["--habitat.game", "qbert"], "qbert is refused: the emulator does not restore"),
-        (["--habitat.senses", "[3, 128]"], "there is no address 128"),
+        (["--habitat.senses", "[3, 128]"], "habitat.senses.1: input should be less than 128"),
         (["--habitat.fatal", "ram[200] == 1"], "ram goes from ram[0] to ram[127]"),
         (["--habitat.food", "lives and points"], "where a condition is needed"),
         (["--habitat.actions", "NOOP JUMP"], "there is no JUMP; pong takes NOOP, FIRE"),

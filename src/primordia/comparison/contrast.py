@@ -4,6 +4,7 @@ Two worlds whose order is unknown count as a tie (Gehan 1965).
 """
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,7 @@ from primordia.comparison import needed
 from primordia.comparison.measured import Bounds, Measured
 from primordia.comparison.pairs import Paired, Rows, paired
 from primordia.comparison.resample import LEAST, MISSED, enough, interval, least, resamples
-from primordia.history.series import plain, quantile
+from primordia.history.series import plain
 
 WORDS = ((0.147, "negligible"), (0.33, "small"), (0.474, "medium"))
 """The word for an absolute delta below each number; from the last number on it is "large" (Romano et al.
@@ -120,7 +121,8 @@ def _interval(runs: tuple[Measured, Measured], streams: tuple[int, int], missed:
 def _medians(run: Measured, stream: int, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Return bounds of the median in each resample of the worlds, each float64 (count,)."""
     parts = map(run.take, resamples(len(run.value), stream, count))
-    bounds = [(quantile(part.value, 0.5), quantile(part.high, 0.5)) for part in parts]
+    middle = partial(np.quantile, q=0.5, axis=-1, method="inverted_cdf")
+    bounds = [(middle(part.value), middle(part.high)) for part in parts]
     low, high = map(np.concatenate, zip(*bounds, strict=True))
     return low, high
 

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from primordia.errors import InputError
-from primordia.history.series import quantile
 
 Bounds = tuple[float, float]
 """Lower and upper bound of a value; infinity if no upper bound is known."""
@@ -52,5 +51,6 @@ class Measured:
     def quantile(self, q: float) -> Bounds:
         """Return bounds of the q-quantile: the smallest value that a share q of worlds does not
         exceed."""
-        low, high = (quantile(each, q) for each in (self.value, self.high))
+        both = np.stack([self.value, self.high])
+        low, high = np.quantile(both, q, axis=1, method="inverted_cdf")
         return float(low), float(high)

@@ -55,15 +55,6 @@ def spread(values: np.ndarray) -> np.ndarray:
     return quartiles
 
 
-def quantile(values: np.ndarray, q: float) -> np.ndarray:
-    """Return the smallest value that a share q of the values (..., N) does not exceed, (...).
-
-    The quantile is one of the values, never a mean of two, so infinities are allowed.
-    """
-    place = max(int(np.ceil(q * values.shape[-1])) - 1, 0)
-    return np.partition(values, place, axis=-1)[..., place]
-
-
 def mean_of_known(values: np.ndarray, axis: int) -> np.ndarray:
     """Return the mean along an axis of the values that are known, float64; NaN if there are none."""
     return np.ma.masked_invalid(values).mean(axis=axis).filled(np.nan)

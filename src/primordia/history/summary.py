@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from primordia.history.series import quantile
 from primordia.printable import counted, often
 
 MAX_LISTED = 4
@@ -204,7 +203,7 @@ def _share(worlds: list[dict[str, Any]], name: str, what: str) -> str:
     """Return how many worlds passed a moment, and after how many births; other worlds count as later."""
     births = np.array([world[name]["births"] if world[name] else np.inf for world in worlds])
     share = f"{np.isfinite(births).sum():,} of {len(worlds):,} {what}"
-    q1, median, q3 = (quantile(births, q) for q in (0.25, 0.5, 0.75))
+    q1, median, q3 = np.quantile(births, [0.25, 0.5, 0.75], method="inverted_cdf")
     if not np.isfinite(q1):
         return share
     middle, high = (f"{b:,.0f}" if np.isfinite(b) else "later" for b in (median, q3))

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from primordia.cli.assays.options import Found, assay, games_option, source_argument, ticks_option
+from primordia.cli.assays.options import Found, assay, games_option, ticks_option
+from primordia.cli.flags import run_argument
 from primordia.cli.values import COUNT, TICKS, Finite
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ world_option = click.option(
 task_option = click.option(
     "--task", help="Task in which the genomes of a file live [the task that the file names]."
 )
-SUBJECTS = (source_argument, organisms_argument, world_option)
+SUBJECTS = (run_argument, organisms_argument, world_option)
 GAMES = (games_option, ticks_option)
 
 

@@ -12,9 +12,8 @@ from primordia.cli.assays.options import (
     arms_of,
     assay,
     each_option,
-    source_argument,
 )
-from primordia.cli.flags import island_option, runs_argument
+from primordia.cli.flags import island_option, run_argument, runs_argument
 
 
 @assay(
@@ -52,7 +51,7 @@ def threshold(runs: tuple[Path, ...], after: float, island: str | None) -> Found
 
 @assay(
     "Measure whether the oldest organisms are good or were lucky.",
-    source_argument,
+    run_argument,
     each_option(20, "organisms of each group in each world"),
     after_option,
     island_option("All three groups are born on this island"),
@@ -117,7 +116,7 @@ def line(
 
 @assay(
     "Measure how natives of each island live on every island.",
-    source_argument,
+    run_argument,
     each_option(20, "natives of each island of a world, and number of founders"),
     after_option,
     *GAMES,
@@ -140,7 +139,7 @@ def transplant(run: Path, trust: bool, **options: Any) -> Found:
         "--most", type=click.IntRange(min=2), default=40, show_default=True,
         help="At most this many ancestors of a line live again.",
     ),
-    source_argument,
+    run_argument,
     each_option(40, "late organisms of each world, and number of founders"),
     after_option,
     *GAMES,

@@ -12,14 +12,13 @@ from primordia import files
 from primordia.cli.assays import tables
 from primordia.cli.flags import HabitatCommand, trust_option
 from primordia.cli.table import show_table
-from primordia.cli.values import COUNT, TICKS, Finite, OutputPath, PathType
+from primordia.cli.values import COUNT, TICKS, Finite, OutputPath
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from primordia.api import Run
 
-source_argument = click.argument("run", type=PathType())
 after_option = click.option(
     "--after",
     type=Finite(0, 1, max_open=True),

@@ -8,10 +8,10 @@ Arcade Learning Environment (extra `primordia[atari]`).
 from collections.abc import Callable
 from functools import cached_property, partial
 from importlib.metadata import version
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
-from pydantic import Field, PrivateAttr, field_validator, model_validator
+from pydantic import Field, PrivateAttr, model_validator
 
 from primordia.habitats import conditions
 from primordia.habitats.atari.games import facts, legal_actions
@@ -46,7 +46,7 @@ class Atari(HostHabitat, Settings):
     """An Atari game as a habitat: senses are bytes of RAM, (byte - 128) / 128."""
 
     game: str = Field(description="the game's name, such as pong or space_invaders")
-    senses: tuple[int, ...] = Field(
+    senses: tuple[Annotated[int, Field(ge=0, lt=RAM)], ...] = Field(
         (),
         strict=False,
         description="addresses of RAM that organisms perceive, 0 to 127 (default: all)",
@@ -78,14 +78,6 @@ class Atari(HostHabitat, Settings):
     """int32 (N, 3)"""
     _lives: np.ndarray = PrivateAttr()
     """lives left after the latest tick, (N,), a view of the tally"""
-
-    @field_validator("senses")
-    @classmethod
-    def _check_addresses(cls, senses: tuple[int, ...]) -> tuple[int, ...]:
-        for address in senses:
-            if not 0 <= address < RAM:
-                raise ValueError(f"RAM goes from 0 to {RAM - 1}; there is no address {address}")
-        return senses
 
     @model_validator(mode="after")
     def _check_game(self) -> "Atari":
