@@ -237,7 +237,7 @@ def environments(
     """Return ponds in two cells of this process, and the arrays that they fill."""
     shared = fields(Observation(Pond.observation_space), Acting(Pond.action_space), info)
     arrays = {name: np.zeros((2, *shape), dtype) for name, (dtype, shape) in shared.items()}
-    made = Environments(arrays, f"tests.ponds:{kind}-v0", {}, [], saving, False, food, info)
+    made = Environments(arrays, f"tests.ponds:{kind}-v0", {}, saving, False, food, info)
     for cell in range(2):
         made.make(cell)
     return made, arrays

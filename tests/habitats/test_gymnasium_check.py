@@ -36,7 +36,7 @@ def _quick(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("name", FAULTS)
 def test_each_fault_is_found(name: str) -> None:
     saving, fresh, says = FAULTS[name]
-    found = measure(f"tests.ponds:{name}-v0", {}, ())
+    found = measure(f"tests.ponds:{name}-v0", {})
     assert (found.saving, found.fresh) == (saving, fresh)
     assert any(says in fault for fault in found.faults)
 
@@ -51,7 +51,7 @@ def test_each_fault_is_found(name: str) -> None:
     ],
 )
 def test_sound_environments_have_no_fault(name: str, saving: str, why: str) -> None:
-    found = measure(f"tests.ponds:{name}-v0", {}, ())
+    found = measure(f"tests.ponds:{name}-v0", {})
     assert (found.saving, found.fresh, found.faults) == (saving, False, [])
     assert found.why.endswith(why)
     assert bool(found.why) == bool(why)
@@ -78,7 +78,7 @@ def test_the_lifespan_is_the_mean_of_the_ticks_lived_in_the_first_lives(
 
     monkeypatch.setattr(Pond, "reset", begin)
     monkeypatch.setattr(Pond, "step", go_on)
-    found = measure("tests.ponds:Pond-v0", {"edge": 4.0}, ())
+    found = measure("tests.ponds:Pond-v0", {"edge": 4.0})
     assert found.lifespan == pytest.approx(np.mean(spans[:LIVES]))
     assert found.ended == sum(left[:LIVES])
     assert abs(np.mean(spans[:LIVES]) - np.median(spans[:LIVES])) > 1
@@ -87,7 +87,7 @@ def test_the_lifespan_is_the_mean_of_the_ticks_lived_in_the_first_lives(
 
 def test_an_environment_is_made_without_its_time_limit() -> None:
     """The pond is registered with a limit of 50 steps."""
-    env = make("tests.ponds:Pond-v0", {"edge": 1e9}, ())
+    env = make("tests.ponds:Pond-v0", {"edge": 1e9})
     env.reset(seed=1)
     assert [env.step(np.zeros(1, np.float32))[2:4] for _ in range(60)] == [(False, False)] * 60
 
@@ -119,36 +119,36 @@ def test_a_function_of_food_returns_a_number(
 
     monkeypatch.setattr(ponds, "food", food)
     if says is None:
-        check_food("tests.ponds:Pond-v0", {}, (), "tests.ponds:food")
+        check_food("tests.ponds:Pond-v0", {}, "tests.ponds:food")
     else:
         with pytest.raises(ValueError, match=says):
-            check_food("tests.ponds:Pond-v0", {}, (), "tests.ponds:food")
+            check_food("tests.ponds:Pond-v0", {}, "tests.ponds:food")
     ((observation, reward, terminated, truncated, info),) = given
     assert (reward, terminated, truncated, info["age"]) == (observation[1], False, False, 1)
 
 
 def test_an_environment_that_comes_with_gymnasium_goes_on_from_its_state() -> None:
-    assert measure("FrozenLake-v1", {}, ()).saving == "snapshot"
+    assert measure("FrozenLake-v1", {}).saving == "snapshot"
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["InvertedPendulum-v5", "Hopper-v5"])
 def test_robots_go_on_from_their_state(name: str) -> None:
     pytest.importorskip("mujoco")
-    assert measure(name, {}, ()).saving == "snapshot"
+    assert measure(name, {}).saving == "snapshot"
 
 
 @pytest.mark.slow
 def test_what_has_no_plain_state_is_lived_again() -> None:
     pytest.importorskip("Box2D")
-    assert measure("LunarLander-v3", {}, ()).saving == "replay"
-    found = measure("BipedalWalker-v3", {}, ())
+    assert measure("LunarLander-v3", {}).saving == "replay"
+    found = measure("BipedalWalker-v3", {})
     assert (found.saving, found.fresh) == ("replay", True)
 
 
 def test_a_state_names_no_class_to_be_made() -> None:
     """A state of another environment is refused, and what it names is not looked for."""
-    pond, cart = make("tests.ponds:Pond-v0", {}, ()), make("CartPole-v1", {}, ())
+    pond, cart = make("tests.ponds:Pond-v0", {}), make("CartPole-v1", {})
     for env in (pond, cart):
         env.reset(seed=1)
     with pytest.raises(state.UnknownStateError, match="is a Pond here, not a CartPoleEnv"):
@@ -160,7 +160,7 @@ def test_a_restored_environment_has_the_state_that_was_saved(name: str) -> None:
     """The state of the restored environment, written again, is the same to the last byte."""
     if name.endswith("v5"):
         pytest.importorskip("mujoco")
-    one, other = make(name, {}, ()), make(name, {}, ())
+    one, other = make(name, {}), make(name, {})
     for env, seed in ((one, 1), (other, 2)):
         env.action_space.seed(0)
         env.reset(seed=seed)

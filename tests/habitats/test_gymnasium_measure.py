@@ -29,7 +29,7 @@ def test_lives_that_do_not_end_share_the_ticks_and_each_has_its_own_seed(
 ) -> None:
     monkeypatch.setattr(check, "TICKS", 10 * LIVES)
     seeds = noted_seeds(monkeypatch)
-    found = measure("tests.ponds:Pond-v0", {"edge": 1e9}, ())
+    found = measure("tests.ponds:Pond-v0", {"edge": 1e9})
     assert (found.lifespan, found.ended) == (10, 0)
     assert seeds[:LIVES] == [1, 3, 5, 7, 9, 11, 13, 15]
     assert set(seeds) == {
@@ -42,7 +42,7 @@ def test_random_actions_cover_the_whole_space(monkeypatch: pytest.MonkeyPatch) -
     """Numbers are uniform, choices have equal shares, and all are independent of each other."""
     parts = [spaces.Box(-1, 3, (2,), np.float64), spaces.Discrete(3), spaces.Discrete(2)]
     monkeypatch.setattr(Pond, "action_space", spaces.Tuple(parts))
-    trial = _Trial("tests.ponds:Pond-v0", {}, ())
+    trial = _Trial("tests.ponds:Pond-v0", {})
     trial.first.action_space.seed(4)
     rows = trial._random_rows(5000)
     numbers, gear, side = rows[:, :2], rows[:, 2], rows[:, 3]
@@ -54,7 +54,7 @@ def test_random_actions_cover_the_whole_space(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_records_differ_if_observation_reward_or_end_differ() -> None:
-    trial = _Trial("tests.ponds:Pond-v0", {}, ())
+    trial = _Trial("tests.ponds:Pond-v0", {})
     ends = [(False, False), (False, True), (True, False), (True, True)]
     ticks = list(product(([3.0, 4.0], [3.0, 5.0], [6.0, 4.0]), (0.5, 0.25), ends))
     records = [trial._seen(np.array(seen), reward, *end) for seen, reward, end in ticks]
@@ -77,7 +77,7 @@ def test_records_differ_if_observation_reward_or_end_differ() -> None:
 def test_each_fault_of_a_step_is_noted_once(
     seen: list[float], reward: float, changed: bool, fault: list[str]
 ) -> None:
-    trial = _Trial("tests.ponds:Pond-v0", {}, ())
+    trial = _Trial("tests.ponds:Pond-v0", {})
     for _ in range(2):
         trial._watch(trial.first, np.array(seen), reward, changed)
     assert trial.faults == fault

@@ -46,14 +46,14 @@ def test_random_play_has_the_options_and_notes_the_info_of_every_tick(
     monkeypatch.setattr(Pond, "step", go_on)
     seeds = noted_seeds(monkeypatch)
     probe._info.cache_clear()
-    found = probe.info_of("tests.ponds:Pond-v0", {"edge": 1e9}, ())
+    found = probe.info_of("tests.ponds:Pond-v0", {"edge": 1e9})
     probe._info.cache_clear()
     assert found == {"born": 0, "age": 0, "half": 0}
     assert seeds == [0, 40, 80, 120, 160]
 
 
 def test_an_error_ends_a_life_of_random_play() -> None:
-    seen = probe.random_play("tests.ponds:Crashing-v0", {}, ())
+    seen = probe.random_play("tests.ponds:Crashing-v0", {})
     ages = [info["age"] for _, info in seen]
     assert all(age in (0, before + 1) for before, age in pairwise(ages))
     assert len(seen) < probe.TICKS + ages.count(0)  # a step with an error is not noted
@@ -69,8 +69,8 @@ def test_a_picture_is_tried_with_the_options_of_the_environment(
         return Pond()
 
     monkeypatch.setattr(environment, "make", make)
-    assert probe.screen_shape("any", {"edge": 2.0}, ("own",)) == (30, 40, 3)
-    assert made == [("any", {"edge": 2.0}, ("own",), True)]
+    assert probe.screen_shape("any", {"edge": 2.0}) == (30, 40, 3)
+    assert made == [("any", {"edge": 2.0}, True)]
 
 
 def test_an_environment_that_cannot_draw_is_an_error_that_says_why(
@@ -106,7 +106,7 @@ def test_the_rate_is_that_of_the_environment_or_that_of_pictures(
 ) -> None:
     monkeypatch.setattr(Pond, "metadata", metadata)
     probe._probe.cache_clear()
-    found = probe.probe("tests.ponds:Pond-v0", {}, ())
+    found = probe.probe("tests.ponds:Pond-v0", {})
     probe._probe.cache_clear()
     assert (found.rate, found.pictures, found.limit) == (rate, pictures, 50)
 

@@ -46,28 +46,26 @@ def test_a_table_takes_the_place_of_a_value_and_a_value_that_of_a_table() -> Non
     assert base == {"a": {"b": {"c": 1, "d": 2}}}, "the arguments are unchanged"
 
 
-def test_the_code_of_a_part_is_in_its_name_kind_env_food_and_imports() -> None:
+def test_the_code_of_a_part_is_in_its_name_kind_env_and_food() -> None:
     table: dict[str, Any] = {
         "name": "pond.deep:Pond",
         "env": "lake:Lake-v0",
         "food": "reward",
-        "imports": ["hills", "a.b", "not-a-name", 5],
         "file": "mud:File",
         "kind": "weeds:Kind",
     }
-    assert code_of(table, "name") == ["pond.deep:Pond", "lake:Lake-v0", "hills", "a.b"]
-    assert modules_of(table, "name") == ["pond.deep", "lake", "hills", "a.b"]
-    assert code_of({"imports": ("hills", "mud")}, "name") == ["hills", "mud"], "as in Python"
+    assert code_of(table, "name") == ["pond.deep:Pond", "lake:Lake-v0"]
+    assert modules_of(table, "name") == ["pond.deep", "lake"]
     assert code_of({"kind": "weeds:", "food": "soup:eat"}, "kind") == ["weeds:", "soup:eat"]
-    assert code_of({"name": "no-name:Pond", "imports": "hills"}, "name") == []
+    assert code_of({"name": "no-name:Pond"}, "name") == []
     assert code_of({"name": "cartpole"}, "name") == []
 
 
 def test_a_run_names_the_modules_of_all_its_parts() -> None:
-    habitat = {"name": "pond:Pond", "imports": ["hills"]}
+    habitat = {"name": "pond:Pond"}
     other = {"brain": {"kind": "recurrent"}, "mutation": {"kind": "pond.deep:Change"}}
     made = parsed({**MEADOW, "habitat": habitat, **other}, source="test")
-    assert made.own_modules == ["pond", "hills", "pond.deep"]
+    assert made.own_modules == ["pond", "pond.deep"]
 
 
 def test_paths_in_a_file_begin_at_its_folder(tmp_path: Path) -> None:

@@ -26,8 +26,6 @@ DEFAULTS = {"brain": "recurrent", "mutation": "gaussian"}
 
 CODE = ("env", "food")
 """Settings of a part, beside its name, that may be `module:name`."""
-IMPORTS = "imports"
-"""The setting, in a part's table, that lists modules."""
 
 
 def tasks() -> dict[str, dict[str, Any]]:
@@ -114,14 +112,11 @@ def merged(base: dict[str, Any], change: dict[str, Any]) -> dict[str, Any]:
 
 
 def code_of(table: dict[str, Any], key: str) -> list[str]:
-    """Return the code that a part's table names: `module:name` for its class and its functions, and
-    the modules that it lists as imports. The name after the colon may be missing or wrong."""
+    """Return the code that a part's table names: `module:name` for its class and its functions. The
+    name after the colon may be missing or wrong."""
     named = [str(table.get(each, "")) for each in (key, *CODE)]
-    imports = table.get(IMPORTS, ())
-    listed = [str(each) for each in imports] if isinstance(imports, list | tuple) else []
-    given = [*(each for each in named if ":" in each), *listed]
     of_islands = [code for inner in habitats_of_islands(table) for code in code_of(inner, key)]
-    own = [each for each in given if is_dotted(each.partition(":")[0])]
+    own = [each for each in named if ":" in each and is_dotted(each.partition(":")[0])]
     return list(dict.fromkeys([*own, *of_islands]))
 
 

@@ -4,7 +4,7 @@ Some lives with random actions are lived several times and compared bit for bit:
 environment, in new environments, and from states saved on the way.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any, Literal
@@ -59,8 +59,8 @@ class _Life:
 class _Trial:
     """Environments of the same kind, and lives in them."""
 
-    def __init__(self, env: str, options: Mapping[str, Any], imports: Sequence[str]) -> None:
-        self._making = env, options, imports
+    def __init__(self, env: str, options: Mapping[str, Any]) -> None:
+        self._making = env, options
         self.first = self.new()
         self._observation = Observation(self.first.observation_space)
         self._acting = Acting(self.first.action_space)
@@ -150,13 +150,13 @@ class _Trial:
         return row.tobytes() + np.float64(reward).tobytes() + ends
 
 
-def measure(env: str, options: Mapping[str, Any], imports: Sequence[str]) -> Measured:
+def measure(env: str, options: Mapping[str, Any]) -> Measured:
     """Return the results for an environment.
 
     Raises:
         ValueError: the environment cannot be made, or raises an error; the message says which.
     """
-    trial = _Trial(env, options, imports)
+    trial = _Trial(env, options)
     try:
         with quiet():
             lives = trial.lives()

@@ -1,7 +1,7 @@
 """Environments of Gymnasium: made by name, without time limit."""
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
@@ -17,15 +17,12 @@ PICTURES = "rgb_array"
 """The render mode of an environment that is watched."""
 
 
-def make(
-    env: str, options: Mapping[str, Any], imports: Sequence[str], watched: bool = False
-) -> Env:
+def make(env: str, options: Mapping[str, Any], watched: bool = False) -> Env:
     """Return an environment without its time limit.
 
     Args:
         env: the environment's registered name, or `module:NAME` with the module that registers it.
         options: keyword arguments.
-        imports: modules to import first, such as those that register the environment.
         watched: whether the environment must be able to draw pictures.
 
     Raises:
@@ -37,8 +34,8 @@ def make(
         os.environ.setdefault(opengl.VARIABLE, opengl.backend())
     try:
         with quiet(), silent():
-            for each in (*imports, *([module] if colon else [])):
-                own_code.load(each)
+            if colon:
+                own_code.load(module)
             made = gymnasium.make(
                 env, max_episode_steps=-1, disable_env_checker=True, **options, **drawing
             )

@@ -38,11 +38,6 @@ class Gymnasium(HostHabitat, Settings):
 
     env: str = Field(min_length=1, description="registered name, or module:NAME")
     options: dict[str, Any] = Field({}, description="keyword arguments of the environment")
-    imports: tuple[str, ...] = Field(
-        (),
-        strict=False,
-        description="modules to import first, such as those that register the environment",
-    )
     fatal: str = Field(
         "terminated", description='condition that ends a life; "": no condition ends it'
     )
@@ -94,7 +89,7 @@ class Gymnasium(HostHabitat, Settings):
         if self._food_function:
             from primordia.habitats.gymnasium.probe import check_food
 
-            check_food(self.env, self.options, self.imports, self._food_function)
+            check_food(self.env, self.options, self._food_function)
         count = self._probe.observation.width
         if len(self.scale) not in (0, 1, count) or any(each <= 0 for each in self.scale):
             raise ValueError(f"scale: give 1 number or {count} numbers, all above 0")
@@ -106,7 +101,7 @@ class Gymnasium(HostHabitat, Settings):
             from primordia.habitats.gymnasium.probe import probe
         except ImportError:
             raise ValueError(NOT_INSTALLED) from None
-        return probe(self.env, self.options, self.imports)
+        return probe(self.env, self.options)
 
     @cached_property
     def _conditions(self) -> dict[str, Expression]:
@@ -142,7 +137,7 @@ class Gymnasium(HostHabitat, Settings):
         texts = f"{self.fatal} {self.food} {self.effort}"
         if "info" not in texts:
             return {}
-        known = info_of(self.env, self.options, self.imports)
+        known = info_of(self.env, self.options)
         used = {key: width for key, width in known.items() if key in texts}
         return used or known
 
@@ -209,14 +204,14 @@ class Gymnasium(HostHabitat, Settings):
         from primordia.habitats.gymnasium.simulator import SCREEN, fields
 
         shared = fields(self._probe.observation, self._probe.acting, self._info)
-        settings = self.model_dump(include={"env", "options", "imports", "saving", "fresh"})
+        settings = self.model_dump(include={"env", "options", "saving", "fresh"})
         settings |= {
             "food": self._food_function,
             "info": {k: max(n, 1) for k, n in self._info.items()},
         }
         if watched:
             try:
-                shape = screen_shape(self.env, self.options, self.imports)
+                shape = screen_shape(self.env, self.options)
             except ValueError as error:
                 raise InputError(f"habitat: {error}") from None
             shared[SCREEN] = ("uint8", shape)

@@ -1,7 +1,7 @@
 """The description of an environment before a run: spaces, info, time limit and pictures."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -34,18 +34,18 @@ class Probe(NamedTuple):
     """whether the environment states that it can draw"""
 
 
-def probe(env: str, options: Mapping[str, Any], imports: Sequence[str]) -> Probe:
+def probe(env: str, options: Mapping[str, Any]) -> Probe:
     """Return the description of an environment.
 
     Raises:
         ValueError: the environment cannot be made, perceived or acted upon; the message says why.
     """
-    return _probe(env, json.dumps(options, sort_keys=True), tuple(imports))
+    return _probe(env, json.dumps(options, sort_keys=True))
 
 
 @lru_cache(maxsize=64)
-def _probe(env: str, options: str, imports: tuple[str, ...]) -> Probe:
-    made = environment.make(env, json.loads(options), imports)
+def _probe(env: str, options: str) -> Probe:
+    made = environment.make(env, json.loads(options))
     try:
         observation, acting = Observation(made.observation_space), Acting(made.action_space)
     except ValueError as error:
@@ -67,28 +67,26 @@ def _probe(env: str, options: str, imports: tuple[str, ...]) -> Probe:
     return found
 
 
-def info_of(env: str, options: Mapping[str, Any], imports: Sequence[str]) -> dict[str, int]:
+def info_of(env: str, options: Mapping[str, Any]) -> dict[str, int]:
     """Return the keys of an environment's `info` whose values are numbers, and how many numbers
     each value has.
 
     The keys are those that appear at a reset and in random play.
     """
-    return dict(_info(env, json.dumps(options, sort_keys=True), tuple(imports)))
+    return dict(_info(env, json.dumps(options, sort_keys=True)))
 
 
 @lru_cache(maxsize=64)
-def _info(env: str, options: str, imports: tuple[str, ...]) -> dict[str, int]:
+def _info(env: str, options: str) -> dict[str, int]:
     found: dict[str, int] = {}
-    for _, info in random_play(env, json.loads(options), imports):
+    for _, info in random_play(env, json.loads(options)):
         found |= _numbers(info)
     return found
 
 
-def random_play(
-    env: str, options: Mapping[str, Any], imports: Sequence[str]
-) -> list[tuple[np.ndarray, Mapping[str, Any]]]:
+def random_play(env: str, options: Mapping[str, Any]) -> list[tuple[np.ndarray, Mapping[str, Any]]]:
     """Return observation and info of each reset and each of TICKS random steps; an error ends a life."""
-    made = environment.make(env, options, imports)
+    made = environment.make(env, options)
     observation = Observation(made.observation_space)
     seen: list[tuple[np.ndarray, Mapping[str, Any]]] = []
 
@@ -123,13 +121,13 @@ def _numbers(info: Mapping[str, Any]) -> dict[str, int]:
     return sizes
 
 
-def screen_shape(env: str, options: Mapping[str, Any], imports: Sequence[str]) -> tuple[int, ...]:
+def screen_shape(env: str, options: Mapping[str, Any]) -> tuple[int, ...]:
     """Return the shape of an environment's pictures, (height, width, 3).
 
     Raises:
         ValueError: the environment cannot draw; the message says why.
     """
-    made = environment.make(env, options, imports, watched=True)
+    made = environment.make(env, options, watched=True)
     try:
         with quiet():
             made.reset(seed=0)
@@ -141,13 +139,13 @@ def screen_shape(env: str, options: Mapping[str, Any], imports: Sequence[str]) -
         made.close()
 
 
-def check_food(env: str, options: Mapping[str, Any], imports: Sequence[str], function: str) -> None:
+def check_food(env: str, options: Mapping[str, Any], function: str) -> None:
     """Try a food function on the result of one step.
 
     Raises:
         ValueError: there is no such function, or the function returns no number.
     """
-    food, made = environment.food_function(function), environment.make(env, options, imports)
+    food, made = environment.food_function(function), environment.make(env, options)
     with quiet():
         made.action_space.seed(0)
         made.reset(seed=0)

@@ -57,14 +57,13 @@ class Environments:
         arrays: dict[str, np.ndarray],
         env: str,
         options: dict[str, Any],
-        imports: list[str],
         saving: str,
         fresh: bool,
         food: str,
         info: dict[str, int],
     ) -> None:
         self._arrays, self._saving, self._fresh, self._info = arrays, saving, fresh, info
-        self._making = env, options, imports, SCREEN in arrays
+        self._making = env, options, SCREEN in arrays
         self._lives: dict[int, _Life] = {}
         self._food = environment.food_function(food) if food else None
 

@@ -32,9 +32,9 @@ def task(env: str) -> Task:
 
         raise InputError(NOT_INSTALLED) from None
     try:
-        about, found = probe(env, {}, ()), measure(env, {}, ())
+        about, found = probe(env, {}), measure(env, {})
         scale = _scale(env) if about.observation.unbounded().any() else []
-        keys = info_of(env, {}, ())
+        keys = info_of(env, {})
     except ValueError as error:
         raise InputError(str(error)) from None
     own = {
@@ -57,8 +57,8 @@ def _scale(env: str) -> list[float]:
     """
     from primordia.habitats.gymnasium.probe import probe, random_play
 
-    observation = probe(env, {}, ()).observation
-    largest = np.abs([row for row, _ in random_play(env, {}, ())]).max(axis=0)
+    observation = probe(env, {}).observation
+    largest = np.abs([row for row, _ in random_play(env, {})]).max(axis=0)
     large = observation.unbounded() & (largest > PLAIN)
     scale = [float(f"{each:.1g}") if own else 1.0 for each, own in zip(largest, large, strict=True)]
     return scale if large.any() else []
@@ -69,7 +69,7 @@ def _facts(env: str, about: Any, found: Any, keys: dict[str, int]) -> list[str]:
     from primordia.habitats.gymnasium.environment import make
     from primordia.habitats.gymnasium.spaces import described
 
-    made = make(env, {}, ())
+    made = make(env, {})
     one_line = [described(each) for each in (made.observation_space, made.action_space)]
     named = ", ".join(f'info["{key}"]' for key in keys) or "none"
     return [
