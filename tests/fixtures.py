@@ -1,16 +1,18 @@
 """Fixtures of all tests: one shared cache of compiled code, and small sizes of what is compiled."""
 
 import os
-from collections.abc import Iterator
-from functools import lru_cache
-from typing import Any
+from collections.abc import Callable, Iterator
+from functools import lru_cache, wraps
+from typing import Any, TypeVar
 
 import jax
 import pytest
 
-from primordia import compiled, device
+from primordia import compiled, device, fitting
 from primordia.doctor import memo
+from primordia.engine import memory
 from primordia.figures import style
+from primordia.habitats.checks import check_arrays
 from primordia.history import pedigree
 from primordia.organism.playing import in_jax
 from primordia.organism.reliving import relived
@@ -21,6 +23,34 @@ device.prepare()
 
 # Processes that tests start, and workers that those start, import this tree, whatever is installed.
 os.environ["PYTHONPATH"] = commands.TREE
+
+
+Result = TypeVar("Result")
+
+
+def once(function: Callable[..., Result]) -> Callable[..., Result]:
+    """Return a function that remembers each result; errors, and arguments without a hash, it does not."""
+    kept = lru_cache(maxsize=None)(function)
+
+    @wraps(function)
+    def call(*given: Any) -> Result:
+        try:
+            hash(given)
+        except TypeError:
+            return function(*given)
+        return kept(*given)
+
+    return call
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _traced_once() -> Iterator[None]:
+    """Trace equal worlds and habitats once in a process, where only a number or a check is wanted."""
+    needed = once(memory.bytes_needed)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(memory, "bytes_needed", lambda law, *rest: needed(law.compiled, *rest))
+        patch.setattr(fitting, "check_arrays", once(check_arrays))
+        yield
 
 
 @pytest.fixture(autouse=True, scope="session")

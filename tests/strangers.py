@@ -9,44 +9,64 @@ import pytest
 import primordia
 from primordia import own_code
 from primordia.runs import code
+from tests.worlds import HOSTED
 
 POND = """
 from typing import Any
 
-import jax.numpy as jnp
+import numpy as np
 
 from pond_depth import DEPTH
-from primordia.habitats import Discrete, JaxHabitat, Outcome
+from primordia.habitats import Continuous, HostHabitat, Outcome
 from primordia.settings.base import Settings
 
 
-class Pond(JaxHabitat, Settings):
+class Pond(HostHabitat, Settings):
     depth: float = DEPTH
-    senses_size: int = 1
-    action: Any = Discrete(2)
+    senses_size: int = 2
+    action: Any = Continuous(1)
     words: int = 1
     rate: float = 10.0
 
-    def reset(self, words):
-        return jnp.zeros((len(words), 1), jnp.float32)
+    @property
+    def versions(self):
+        return {"pond": "1"}
 
-    def sense(self, bodies):
-        return bodies
+    def open(self, cells, watched=False):
+        self.__dict__["age"] = np.zeros(cells, np.int32)
 
-    def step(self, bodies, action):
-        bodies = bodies + 1
-        return bodies, Outcome(fatal=bodies[:, 0] > 20, food=None, effort=None)
+    def reset(self, cells, words):
+        self.age[cells] = 0
+        return np.zeros((len(cells), 2), np.float32)
+
+    def step(self, action, alive):
+        self.age[alive] += 1
+        senses = np.stack([self.age, 0 * self.age], axis=1).astype(np.float32)
+        return senses, Outcome(self.age > 20)
+
+    def save(self):
+        return {"age": self.age}
+
+    def load(self, arrays):
+        self.age[:] = arrays["age"]
 """
 
-TASK = """
+MUTATION = "mutation = { founder_scale = 0.3 }"
+TASK = f"""
 task = "pond"
-cells = 8
-habitat = { name = "pond:Pond" }
+cells = {HOSTED["cells"]}
+genesis = "fill"
+habitat = {{ name = "pond:Pond" }}
+brain = {{ hidden = 2 }}
+{MUTATION}
+metabolism = {{ store = 9.0, drain = 0.0, gain = 1.0, effort_cost = 1.0, cap = 100.0 }}
+hazard = 1e-9
 replication = 0.3
 [stop]
 ticks = 60
 until = "none"
 """
+"""The pond under the law of HOSTED, whose compiled code other tests share."""
 
 PARTS = ("pond.py", "pond_depth.py")
 

@@ -73,7 +73,7 @@ def run(words: list[str], where: Path) -> None:
 
 
 def try_out(kind: str, text: str, where: Path, law: tuple[object, ...] = ()) -> None:
-    """Do with a block what a reader does, with more flags for each run."""
+    """Do with a block what a reader does; a law is more flags for each run, and shorter videos."""
     if named := FILE.match(text):
         (where / named[1]).write_text(text)
     if kind == "sh":
@@ -83,7 +83,8 @@ def try_out(kind: str, text: str, where: Path, law: tuple[object, ...] = ()) -> 
                 run(["make", "-n", "-C", str(HERE), *words], where)
             elif program:
                 assert program == "primordia", line
-                done = commands.here(*words, *(law if words[0] == "run" else ()))
+                short = {"run": law, "replay": ("--to", 20) if law else ()}
+                done = commands.here(*words, *short.get(words[0], ()))
                 assert done.returncode == 0, f"{line}\n{done.stdout}{done.stderr}"
     elif kind == "python":
         file = where / "block.py"

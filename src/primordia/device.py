@@ -8,6 +8,7 @@ import platform
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext, suppress
 from contextvars import ContextVar
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 
@@ -168,10 +169,16 @@ def instruction_set() -> str:
 def versions() -> dict[str, str]:
     """Return the versions, device and instruction set that must be equal for a run to go on exactly."""
     return {
-        **{name: version(name) for name in PACKAGES},
+        **_packages(),
         "device": _kind(default()),
         "instruction_set": instruction_set(),
     }
+
+
+@cache
+def _packages() -> dict[str, str]:
+    """Return the versions of PACKAGES, whose files are read once in a process."""
+    return {name: version(name) for name in PACKAGES}
 
 
 def _kind(device: jax.Device) -> str:

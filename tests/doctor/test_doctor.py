@@ -2,6 +2,7 @@
 
 import json
 import subprocess
+import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from importlib.metadata import metadata
@@ -19,6 +20,7 @@ from primordia.doctor import installed, memo, promises
 from primordia.doctor.promises import Trial
 from primordia.history.pedigree import genomes
 from primordia.organism.reliving.compare import Reliving, relive
+from tests.commands import well_formed
 from tests.worlds import config
 
 
@@ -76,6 +78,7 @@ def test_runs_of_other_processes_are_on_the_device_that_is_tried(
     monkeypatch.setattr(subprocess, "Popen", lambda words, **_: asked.append(words))
     promises._begun(tmp_path / "run", "--speed", "9")
     assert ("--device", "gpu") in pairwise(asked[0])
+    well_formed(*asked[0][3:])
     trials = [name for name, _ in promises._attempts()]
     assert "a world on one thread is the same as on all" not in trials
     assert trials[-2:] == [
@@ -84,9 +87,14 @@ def test_runs_of_other_processes_are_on_the_device_that_is_tried(
     ]
 
 
-def test_what_a_run_says_that_ends_early_is_the_fault(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(promises, "TASK", "Nothing-survival")
-    assert "Nothing-survival" in promises._killed(["digest"])
+def test_what_a_run_says_that_ends_early_is_the_fault(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    python = tmp_path / "python"
+    python.write_text("#!/bin/sh\necho there is no room for $4 >&2\nexit 2\n")
+    python.chmod(0o755)
+    monkeypatch.setattr(sys, "executable", str(python))
+    assert promises._killed(["digest"]) == f"there is no room for {promises.TASK}\n"
 
 
 @pytest.mark.slow

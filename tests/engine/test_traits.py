@@ -15,6 +15,7 @@ from primordia.figures.traits import draw
 from primordia.habitats.archipelago import joined
 from primordia.habitats.traits import Traits
 from primordia.history import traits as history
+from primordia.history.pedigree import genomes
 from primordia.history.series import spaced
 from primordia.history.summary import summary
 from primordia.history.traits import EACH, course, factors_of
@@ -229,13 +230,13 @@ def test_traits_over_births_stand_beside_their_neutral_shadows(
 
 
 def test_nodes_of_the_phylogeny_in_the_report_have_their_traits(
-    run: Path, opened: Archive, traits: Traits
+    opened: Archive, traits: Traits
 ) -> None:
     tree = view(opened, 1, "seed", 1)["tree"]
     assert tree["traits"]["names"] == ["pole", "gravity"]
-    for node in tree["nodes"]:
-        genome = primordia.load(run).organism(node["number"], 1).genome()
-        np.testing.assert_allclose(node["traits"], traits.factors(genome[None, -2:])[0], atol=1e-4)
+    rows = np.array([opened.lives.row(node["number"], 1) for node in tree["nodes"]])
+    factors = traits.factors(genomes(opened, rows)[:, -2:])
+    np.testing.assert_allclose([node["traits"] for node in tree["nodes"]], factors, atol=1e-4)
     assert len({tuple(node["traits"]) for node in tree["nodes"]}) > 3
 
 
@@ -283,7 +284,7 @@ def test_a_phylogeny_has_traits_if_they_are_asked_for(
 ) -> None:
     """Those that lived before a fork have theirs from the run that was forked."""
     factors = factors_of(opened, traits, np.arange(len(opened.lives)))
-    monkeypatch.setattr(history, "AT_ONCE", 50)
+    monkeypatch.setattr(history, "AT_ONCE", 1 + len(opened.lives) // 3)
     whole = primordia.load(run).phylogeny(traits=True)
     assert whole is not None
     for number, name in enumerate(traits.names):

@@ -22,11 +22,14 @@ from primordia.habitats.gymnax import task as by_name
 from primordia.habitats.gymnax.check import Measured, measure
 from primordia.habitats.gymnax.habitat import Gymnax
 from primordia.settings.tables import merged
+from tests.fixtures import once
 
 EXPERIMENTS = Path(__file__).parent.parent.parent / "experiments"
 FILES = sorted(EXPERIMENTS.glob("*/*.toml"))
 FEWER = {"atari": 10}
 """Least number of worlds of an experiment in which each world takes ten minutes of a core."""
+USES = once(Gymnax._uses)
+"""Whether an environment uses a parameter, traced once for all arms."""
 TRIALS = sorted(EXPERIMENTS.glob("*/founders/*.toml"))
 
 
@@ -60,6 +63,7 @@ def _unplayed(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
     monkeypatch.setattr(fitting, "check_arrays", lambda habitat: None)
     monkeypatch.setattr(by_name, "measure", unmeasured)
+    monkeypatch.setattr(Gymnax, "_uses", USES)
     by_name.task.cache_clear()
     yield
     by_name.task.cache_clear()

@@ -34,7 +34,7 @@ from tests.phylogeny.forests import (
     phylotrack,
 )
 
-DEEP = 20_000
+DEEP = 5_000
 
 
 def text_of(whole: Phylogeny) -> str:
@@ -146,7 +146,7 @@ def test_files_of_all_formats_hold_the_same(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, rows_at_once: int
 ) -> None:
     """They are written in batches, of which a large phylogeny has several."""
-    world = [(min(number, number % 10), number % 2, number % 3 == 0) for number in range(100)]
+    world = [(min(number, number % 10), number % 2, number % 3 == 0) for number in range(30)]
     whole = forest(world, world)
     rows, text = table(whole), text_of(whole)
     for module in ("table", "newick"):

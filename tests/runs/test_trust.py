@@ -17,7 +17,7 @@ from primordia.runs import code
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
 from tests.report.unpacked import content_of
-from tests.strangers import LIVING, POND, TASK, begun, elsewhere, forget, words
+from tests.strangers import LIVING, MUTATION, POND, TASK, begun, elsewhere, forget, words
 from tests.trouble import newest, reseal
 
 
@@ -79,7 +79,9 @@ def test_a_mutation_is_trusted_with_its_habitat(
     """Also where the trust cannot be stored, as in a home folder that is read-only."""
     base = "from primordia.mutations.gaussian import Gaussian"
     (folder / "pond_mutation.py").write_text(f"{base}\n\n\nclass Own(Gaussian):\n    pass\n")
-    (folder / "task.toml").write_text(f'mutation = {{ kind = "pond_mutation:Own" }}\n{TASK}')
+    (folder / "task.toml").write_text(
+        TASK.replace(MUTATION, 'mutation = { kind = "pond_mutation:Own" }')
+    )
     run = elsewhere(folder, begun(folder), monkeypatch)
     sys.modules.pop("pond_mutation")
     genome = run.parent / "genome.safetensors"

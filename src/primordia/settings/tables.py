@@ -50,9 +50,9 @@ def values_of(task: str) -> dict[str, Any]:
     Raises:
         InputError: there is no such task, file or environment, or the file cannot be read.
     """
-    known = tasks()
+    known = _shipped()
     if task in known:
-        return known[task]
+        return deepcopy(known[task])
     if doors.is_door(task):
         return doors.task(task).table
     if task.endswith(".toml") or isfile(task):
@@ -60,7 +60,7 @@ def values_of(task: str) -> dict[str, Any]:
         name = str(values.get("task"))
         if name not in known and "habitat" not in values and (near := did_you_mean(name, [*known])):
             raise InputError(f"{task}: there is no task {name!r}{near}")
-        return merged(known.get(name, {}), values)
+        return merged(deepcopy(known.get(name, {})), values)
     raise InputError(
         f"there is no task {task!r}{did_you_mean(task, list(known))}; give a name that `primordia"
         " tasks` lists, a file FILE.toml, or an environment gym:NAME"

@@ -82,7 +82,9 @@ def versions(env: str) -> dict[str, str]:
     path = str(entry).split(":")[0] if isinstance(entry, str) else getattr(entry, "__module__", "")
     engines = {"gymnasium.envs.box2d": ["box2d"], "gymnasium.envs.mujoco": ["mujoco"]}
     own = next((each for start, each in engines.items() if path.startswith(start)), [])
-    names = {"gymnasium", "numpy", *own, *own_code.owners().get(path.partition(".")[0], [])}
+    top = path.partition(".")[0]
+    others = own_code.packages([top]) if top not in ("", "gymnasium") else []
+    names = {"gymnasium", "numpy", *own, *others}
     found = {}
     for name in sorted(names):
         try:
