@@ -52,10 +52,11 @@ def test_a_bundle_is_the_run_again(
     primordia.load(first).bundle(third)
     assert first.read_bytes() == second.read_bytes() == third.read_bytes()
     assert primordia.load(first).info() == primordia.load(path).info()
-    for place, out in ((first, "there"), (path, "here")):
-        assert here("plot", place, "--figure", "ages", "--out", tmp_path / out).returncode == 0
-    drawn, expected = (tmp_path / each / "ages.png" for each in ("there", "here"))
-    assert drawn.read_bytes() == expected.read_bytes()
+    if which == "fork":  # its figures need what lived before the fork, too
+        for place, out in ((first, "there"), (path, "here")):
+            assert here("plot", place, "--figure", "ages", "--out", tmp_path / out).returncode == 0
+        drawn, expected = (tmp_path / each / "ages.png" for each in ("there", "here"))
+        assert drawn.read_bytes() == expected.read_bytes()
     for number in primordia.load(path).lives().of_world(0).id[::60].tolist():
         relived = [primordia.load(each).organism(number).relive() for each in (first, path)]
         assert relived[0].agrees
