@@ -2,6 +2,8 @@
 
 import socket
 import sys
+from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -15,8 +17,8 @@ from tests.commands import complains, here
 from tests.experiments.meadows import write
 from tests.worlds import digests_of
 
-ray = pytest.importorskip("ray")
 pytestmark = [
+    pytest.mark.skipif(find_spec("ray") is None, reason="Ray is not installed"),
     pytest.mark.filterwarnings("ignore::ResourceWarning"),  # of Ray
     pytest.mark.filterwarnings("ignore::FutureWarning"),  # of Ray
     pytest.mark.filterwarnings("ignore:os.fork:RuntimeWarning"),  # of JAX, when Ray begins
@@ -70,7 +72,7 @@ def test_a_folder_that_a_node_does_not_see_is_refused(
     monkeypatch.setattr(on_ray, "_sees", lambda path: False)
     file = write(tmp_path)
     complains(here("experiment", file, "--out", tmp_path / "out", "--ray"), 2, "does not see")
-    assert not ray.is_initialized()
+    assert not import_module("ray").is_initialized()
 
 
 def test_a_cluster_that_is_not_there_is_one_clear_line(

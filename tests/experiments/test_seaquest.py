@@ -3,7 +3,6 @@
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from experiments.skill.seaquest import Seaquest
 
 BELOW_RIGHT = [2, 2, 6]
 """Row and column around the submarine, and the channel of divers."""
@@ -12,6 +11,8 @@ BELOW_RIGHT = [2, 2, 6]
 @pytest.mark.parametrize(("row", "column"), [(0, 0), (5, 4), (8, 9)])
 def test_a_submarine_perceives_the_cells_around_it_and_both_gauges(row: int, column: int) -> None:
     """A diver is below to the right, or outside the grid; six cells of oxygen, and one diver on board."""
+    from experiments.skill.seaquest import Seaquest  # only here: Pgx takes half a second
+
     inside = column < 9
     grid = np.zeros((10, 10, 10), bool)
     grid[row, column, 0] = grid[9, 8, 8] = True

@@ -1,5 +1,7 @@
 """The environments of gymnax and Craftax: the same as in their own libraries, and exact."""
 
+from importlib import import_module
+from importlib.util import find_spec
 from typing import Any
 
 import jax
@@ -15,7 +17,9 @@ from primordia.habitats.gymnax.habitat import Gymnax
 from primordia.habitats.gymnax.task import task
 from primordia.testing import check_habitat
 
-gymnax = pytest.importorskip("gymnax", reason="pip install --no-deps --group no-deps")
+pytestmark = pytest.mark.skipif(
+    find_spec("gymnax") is None, reason="pip install --no-deps --group no-deps"
+)
 
 CLASSIC = ["CartPole-v1", "Acrobot-v1", "MountainCar-v0", "MountainCarContinuous-v0", "Pendulum-v1",
            "Catch-bsuite"]  # fmt: skip
@@ -30,7 +34,7 @@ WORDS = np.random.default_rng(5).integers(2**32, size=(6, 2), dtype=np.uint32)
     ["Catch-bsuite", *(pytest.param(name, marks=pytest.mark.slow) for name in MINATAR[:2])],
 )
 def test_a_life_is_what_the_library_computes(name: str) -> None:
-    habitat, (env, params) = Gymnax(env=name, food="reward"), gymnax.make(name)
+    habitat, (env, params) = Gymnax(env=name, food="reward"), import_module("gymnax").make(name)
     folded = jax.vmap(jax.random.fold_in, (0, None))
     begin, go_on = jax.vmap(env.reset_env, (0, None)), jax.vmap(env.step_env, (0, 0, 0, None))
 
