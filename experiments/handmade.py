@@ -4,8 +4,7 @@
 
 Nothing has to be run before. Each player plays GAMES games of at most TICKS ticks: in Breakout one stays
 under the ball, with and without sticky actions, and another goes where the ball will be in the next tick;
-in Space Invaders one shoots, and dodges bullets that it sees; in Freeway one always goes up; in Seaquest
-one dives, fires, and comes up as soon as a diver is on board.
+in Space Invaders one shoots, and dodges bullets that it sees; in Freeway one always goes up.
 The table goes to `experiments/skill/results/minatar-handmade`.
 """
 
@@ -24,14 +23,12 @@ from primordia.comparison.tables import spread_text
 from primordia.experiments.results import table
 
 GAMES = 200
-TICKS = {"Breakout": 1_000, "Freeway": 2_500, "Seaquest": 5_000, "SpaceInvaders": 1_000}
-"""Length of a game, which is the environment's own, but for Seaquest."""
-SEAQUEST = "experiments/skill/tasks/seaquest.toml"
+TICKS = {"Breakout": 1_000, "Freeway": 2_500, "SpaceInvaders": 1_000}
+"""Length of a game, which is the environment's own."""
 PADDLE, BALL, TRAIL = range(3)
 EDGE, BULLET = 0, 5
 NOOP, LEFT, RIGHT, SHOOT = range(4)
 UP = 1
-RISE, DIVE, FIRE = 2, 4, 5
 RESULTS = Path(__file__).parent / "skill" / "results" / "minatar-handmade"
 
 
@@ -72,20 +69,12 @@ def up(senses: jax.Array) -> jax.Array:
     return jnp.full(len(senses), UP, jnp.int32)
 
 
-def surface(senses: jax.Array) -> jax.Array:
-    """Return the button that dives from the surface, fires, or goes up with a diver, int32 (N,)."""
-    above = senses[:, :72].reshape(-1, 3, 3, 8)[:, 0, 1, 7] > 0
-    aboard = senses[:, -1] > 0
-    return jnp.where(above, DIVE, jnp.where(aboard, RISE, FIRE)).astype(jnp.int32)
-
-
 PLAYERS: tuple[tuple[str, str, float, Callable], ...] = (
     ("stays under the ball", "Breakout", 0.1, follow),
     ("goes where the ball will be", "Breakout", 0.1, partial(follow, ahead=True)),
     ("stays under the ball, nothing sticks", "Breakout", 0.0, follow),
     ("shoots, and dodges bullets", "SpaceInvaders", 0.1, dodge),
     ("always goes up", "Freeway", 0.1, up),
-    ("dives, fires, and comes up with a diver", "Seaquest", 0.1, surface),
 )
 
 
@@ -94,8 +83,8 @@ def main() -> None:
     device.prepare()
     rows, lines = [], []
     for name, game, sticky, act in PLAYERS:
-        task = SEAQUEST if game == "Seaquest" else f"MinAtar-{game}-survival"
-        lived, score = played(task, {"sticky": sticky}, TICKS[game], act)
+        task, habitat = f"MinAtar-{game}-survival", {"sticky": sticky}
+        lived, score = played(task, habitat, TICKS[game], act)
         rows += [
             {"player": name, "game": game, "sticky": sticky, "lifespan": int(a), "score": float(b)}
             for a, b in zip(lived, score, strict=True)

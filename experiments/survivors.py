@@ -1,4 +1,4 @@
-"""Measure hand-written players in Craftax-Classic, which perceive what organisms perceive.
+"""Measure hand-written players in Craftax-Classic. They perceive what organisms perceive.
 
     python experiments/survivors.py
 
@@ -31,7 +31,7 @@ STEPS = jnp.array([[0, -1], [0, 1], [-1, 0], [1, 0]])
 """Rows and columns of a step to the left, to the right, up and down."""
 FREE = [BlockType.GRASS.value, BlockType.SAND.value, BlockType.PATH.value]
 HUNGRY, THIRSTY, TIRED = 0.6, 0.6, 0.3
-"""Food, drink and energy, of 0.9, below which a player looks for more."""
+"""Food, drink and energy below which a player looks for more; the most is 0.9."""
 
 
 class Player(NamedTuple):
@@ -42,6 +42,7 @@ class Player(NamedTuple):
     feeds: bool = False
     """drinks, and eats cows, and goes to water and cows that it sees"""
     sleeps: bool = False
+    """sleeps when it is tired, until it wakes"""
 
 
 def act(player: Player, senses: Array) -> Array:
@@ -102,7 +103,7 @@ def main() -> None:
         rows += [{"player": name, "lifespan": int(each)} for each in lived]
         lines.append([name, spread_text(lived.tolist()), max(lived)])
         print(f"{name} is done", flush=True)
-    note = f"Medians (quartiles) of {GAMES} games."
+    note = f"Medians (quartiles) of {GAMES} games, which were cut after {TICKS:,} ticks."
     write_rows(RESULTS, rows, f"{table(['player', 'lifespan', 'longest'], lines)}\n\n{note}")
 
 

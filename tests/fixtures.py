@@ -3,7 +3,7 @@
 import os
 from collections.abc import Callable, Iterator
 from functools import lru_cache, wraps
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import jax
 import pytest
@@ -13,7 +13,9 @@ from primordia.doctor import memo
 from primordia.engine import memory
 from primordia.figures import style
 from primordia.habitats.checks import check_arrays
+from primordia.habitats.contract import AnyHabitat
 from primordia.history import pedigree
+from primordia.law.law import Law
 from primordia.organism.playing import in_jax
 from primordia.organism.reliving import relived
 from primordia.organism.reliving.in_jax import LifeInJax
@@ -26,6 +28,13 @@ os.environ["PYTHONPATH"] = commands.TREE
 
 
 Result = TypeVar("Result")
+
+
+class Sensed(NamedTuple):
+    """What the memory of a run depends on, of a habitat on the host."""
+
+    kind: str
+    senses_size: int
 
 
 def once(function: Callable[..., Result]) -> Callable[..., Result]:
@@ -45,10 +54,18 @@ def once(function: Callable[..., Result]) -> Callable[..., Result]:
 
 @pytest.fixture(autouse=True, scope="session")
 def _traced_once() -> Iterator[None]:
-    """Trace equal worlds and habitats once in a process, where only a number or a check is wanted."""
+    """Trace equal worlds and habitats once in a process, where only a number or a check is wanted.
+
+    Of a habitat on the host, which holds simulators, only its senses count; so it is not kept.
+    """
     needed = once(memory.bytes_needed)
+
+    def of(law: Law, habitat: AnyHabitat, *devices: int) -> int:
+        counts = habitat if habitat.kind == "jax" else Sensed(habitat.kind, habitat.senses_size)
+        return needed(law.compiled, counts, *devices)
+
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(memory, "bytes_needed", lambda law, *rest: needed(law.compiled, *rest))
+        patch.setattr(memory, "bytes_needed", of)
         patch.setattr(fitting, "check_arrays", once(check_arrays))
         yield
 
@@ -64,9 +81,8 @@ def _compiled_code(tmp_path_factory: pytest.TempPathFactory) -> None:
     cache = os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(shared / "compiled"))
     jax.config.update("jax_compilation_cache_dir", cache)
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0)
-    jax.config.update(
-        "jax_traceback_in_locations_limit", 1
-    )  # places of operations, which nobody reads
+    # Nobody reads where an operation was written, so one place for each is enough.
+    jax.config.update("jax_traceback_in_locations_limit", 1)
     os.environ["JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS"] = "0"
     # With a limit, which commands set, JAX writes nothing into a folder that has entries of a process
     # without one: each command then compiled everything again.

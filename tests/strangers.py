@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 
 import pytest
+import tomli_w
 
 import primordia
 from primordia import own_code
@@ -51,21 +52,15 @@ class Pond(HostHabitat, Settings):
         self.age[:] = arrays["age"]
 """
 
-MUTATION = "mutation = { founder_scale = 0.3 }"
-TASK = f"""
-task = "pond"
-cells = {HOSTED["cells"]}
-genesis = "fill"
-habitat = {{ name = "pond:Pond" }}
-brain = {{ hidden = 2 }}
-{MUTATION}
-metabolism = {{ store = 9.0, drain = 0.0, gain = 1.0, effort_cost = 1.0, cap = 100.0 }}
-hazard = 1e-9
-replication = 0.3
-[stop]
-ticks = 60
-until = "none"
-"""
+TASK = tomli_w.dumps(
+    {
+        "task": "pond",
+        **HOSTED,
+        "habitat": {"name": "pond:Pond"},
+        "replication": 0.3,
+        "stop": {"ticks": 60, "until": "none"},
+    }
+)
 """The pond under the law of HOSTED, whose compiled code other tests share."""
 
 PARTS = ("pond.py", "pond_depth.py")

@@ -73,7 +73,7 @@ def run(words: list[str], where: Path) -> None:
 
 
 def try_out(kind: str, text: str, where: Path, law: tuple[object, ...] = ()) -> None:
-    """Do with a block what a reader does; a law is more flags for each run, and shorter videos."""
+    """Do with a block what a reader does. With a law, runs get its flags, and videos end at tick 20."""
     if named := FILE.match(text):
         (where / named[1]).write_text(text)
     if kind == "sh":

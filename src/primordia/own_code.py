@@ -102,7 +102,7 @@ def load(module: str) -> ModuleType:
     Raises:
         LookupError: the text is not the dotted name of a module. Exception: any error of the import.
     """
-    if not is_dotted(module):  # settings that list modules to be trusted leave such a name out
+    if not is_dotted(module):  # `tables.code_of` leaves such a name out
         raise LookupError(f"{module!r} is not the name of a module")
     if module.partition(".")[0] in sys.stdlib_module_names:  # its functions are no parts of a run
         raise LookupError(f"{module} is a module of Python's standard library; name another module")

@@ -1,14 +1,17 @@
 """Pictures of environments in JAX: grids of colours, or bars."""
 
 import colorsys
+from types import SimpleNamespace
 from typing import Any
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
 from primordia.habitats.framed import MARGIN
-from primordia.habitats.gymnax.picture import BAR, GROUND, WIDTH, draw, draw_view, rendered
+from primordia.habitats.gymnax.habitat import Gymnax
+from primordia.habitats.gymnax.picture import BAR, GROUND, WIDTH, draw, draw_view
 from primordia.habitats.gymnax.spaces import View
 
 
@@ -88,13 +91,29 @@ def test_there_is_no_picture_of_a_view_if_a_state_cannot_be_observed_again(env: 
 
 
 class Painted:
-    """An environment that draws itself: its state is a shade of grey."""
+    """An environment that draws itself: its state is a shade of grey, which an action darkens."""
+
+    default_params = SimpleNamespace(step=20)
+
+    def reset_env(self, key: Any, params: Any) -> Any:
+        return jnp.zeros(1), {"shade": jnp.int32(200)}
+
+    def step_env(self, key: Any, state: Any, action: Any, params: Any) -> Any:
+        return jnp.zeros(1), {"shade": state["shade"] - params.step * action}, 0.0, False, {}
+
+    def action_space(self, params: Any) -> Any:
+        return SimpleNamespace(n=2)
+
+    def observation_space(self, params: Any) -> Any:
+        return SimpleNamespace(low=0.0, high=1.0, shape=(1,))
 
     def picture(self, state: Any, params: Any) -> Any:
-        return np.full((2, 3, 3), state + params)
+        return np.full((2, 3, 3), state["shade"] + params.step)
 
 
 def test_an_environment_of_your_own_may_draw_its_pictures() -> None:
-    drawn = rendered(Painted(), 100, 20)
-    assert drawn is not None
-    assert np.asarray(drawn)[MARGIN:].tolist() == np.full((2, 3, 3), 120).tolist()
+    habitat = Gymnax(env=f"{__name__}:Painted")
+    bodies, _ = habitat.step(habitat.reset(np.zeros((1, 2), np.uint32)), np.ones(1, np.int32))
+    alone = jax.tree.map(lambda each: each[0], bodies)
+    drawn = np.asarray(habitat.picture(alone, np.int32(1)))[MARGIN:]
+    assert drawn.tolist() == np.full((2, 3, 3), 200 - 20 + 20).tolist()

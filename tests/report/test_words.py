@@ -157,9 +157,9 @@ def test_the_settings_are_put_into_words() -> None:
     assert meadow == (
         "Meadows in which nothing moves. The world has 1,200 cells on a torus, a plane whose"
         " opposite edges meet. In each cell lives at most one organism: a small neural network with"
-        " its own simulated body. Nobody chooses which organisms go on. An organism lives until its"
-        " world kills it. Meanwhile the organism copies itself into an empty neighbouring cell."
-        " Copies differ from their parent by small random changes."
+        " its own simulated body. Nobody chooses which organisms live or have children. An organism"
+        " lives until its world kills it. Meanwhile the organism copies itself into an empty"
+        " neighbouring cell. Copies differ from their parent by small random changes."
     )
     ring = setting(config(TORUS, about="", seeds=2000, placement={"topology": "ring"}))
     assert ring.startswith("Each of 2,000 worlds has 24 cells on a ring. ")

@@ -17,7 +17,7 @@ from primordia.runs import code
 from primordia.runs.archive import Archive
 from tests.commands import complains, here
 from tests.report.unpacked import content_of
-from tests.strangers import LIVING, MUTATION, POND, TASK, begun, elsewhere, forget, words
+from tests.strangers import LIVING, POND, TASK, begun, elsewhere, forget, words
 from tests.trouble import newest, reseal
 
 
@@ -80,7 +80,7 @@ def test_a_mutation_is_trusted_with_its_habitat(
     base = "from primordia.mutations.gaussian import Gaussian"
     (folder / "pond_mutation.py").write_text(f"{base}\n\n\nclass Own(Gaussian):\n    pass\n")
     (folder / "task.toml").write_text(
-        TASK.replace(MUTATION, 'mutation = { kind = "pond_mutation:Own" }')
+        TASK.replace("[mutation]\n", '[mutation]\nkind = "pond_mutation:Own"\n')
     )
     run = elsewhere(folder, begun(folder), monkeypatch)
     sys.modules.pop("pond_mutation")

@@ -54,8 +54,8 @@ def setting(config: Config) -> str:
     parts = [
         f"{about}{worlds} {config.cells:,} {WORLDS[config.placement.topology]}. In each cell lives"
         " at most one organism: a small neural network with its own simulated body.",
-        "Nobody chooses which organisms go on. An organism lives until its world kills it. Meanwhile"
-        f" the organism copies itself into {room} cell{taken}.",
+        "Nobody chooses which organisms live or have children. An organism lives until its world kills"
+        f" it. Meanwhile the organism copies itself into {room} cell{taken}.",
     ]
     if config.islands.count > 1:
         parts.append(

@@ -49,7 +49,7 @@ class Atari(HostHabitat, Settings):
     senses: tuple[Annotated[int, Field(ge=0, lt=RAM)], ...] = Field(
         (),
         strict=False,
-        description="addresses of RAM that organisms perceive, 0 to 127 (default: all)",
+        description="addresses of RAM that organisms perceive (default: all)",
     )
     blind: bool = Field(False, description="true: senses are constant (a control)")
     fatal: str = Field("game_over", description="condition that ends a life")

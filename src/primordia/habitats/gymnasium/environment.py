@@ -83,6 +83,7 @@ def versions(env: str) -> dict[str, str]:
     engines = {"gymnasium.envs.box2d": ["box2d"], "gymnasium.envs.mujoco": ["mujoco"]}
     own = next((each for start, each in engines.items() if path.startswith(start)), [])
     top = path.partition(".")[0]
+    # Gymnasium's own package is known, and to list all packages takes up to a second.
     others = own_code.packages([top]) if top not in ("", "gymnasium") else []
     names = {"gymnasium", "numpy", *own, *others}
     found = {}

@@ -147,7 +147,7 @@ class Gymnax(JaxHabitat, Settings):
         return Gymnax(**{**self.model_dump(), **changed})
 
     def picture(self, body: Body, action: np.ndarray) -> "Image":
-        """Return a picture drawn by the environment's library, or else a picture of the body's senses.
+        """Return a picture drawn by the environment or its library, or else one of the body's senses.
 
         If a player perceives a part of a grid, the picture shows the whole grid, with a frame around
         this part.

@@ -1,4 +1,4 @@
-"""Pictures of bodies, drawn by the environment's library, or else pictures of the bodies' senses.
+"""Pictures of bodies, drawn by the environment or its library, or else pictures of the bodies' senses.
 
 A grid has a colour for each channel, and a frame around the cells that the player perceives; other
 senses have a bar each.
@@ -36,7 +36,7 @@ def rendered(env: Any, state: Any, params: Any) -> Image.Image | None:
     Raises:
         InputError: this machine cannot draw robots.
     """
-    if hasattr(env, "picture"):  # your own environment
+    if hasattr(env, "picture"):  # of your own; its errors are yours to see
         return _framed(env.picture(state, params))
     try:
         with quiet(), silent():
