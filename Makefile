@@ -20,7 +20,7 @@ demo: $(VENV)/installed  ## evolve pole balancers, draw and report them, and fil
 	@echo "Explore    runs/demo/report.html in a browser: every organism, its line of descent, the film of its world"
 	@echo 'Read on    docs/tutorial.md, ten minutes; `source .venv/bin/activate` puts `primordia` on the path'
 
-test: $(VENV)/installed-dev compiled  ## run the tests: a little over five minutes on two cores, three the second time
+test: $(VENV)/installed-dev compiled  ## run the tests: four minutes on two cores, two the second time
 	$(TESTS) --dist loadfile --no-loadscope-reorder
 
 quick: $(VENV)/installed-dev compiled  ## test each promise once, with the tests in tests/quick.txt: a minute on two cores
