@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 from craftax.craftax_classic.constants import Action, BlockType
 from games import write_rows
 from handmade import GAMES, played
@@ -27,7 +28,7 @@ VIEW, HERE = (7, 9, 21), (3, 4)
 """Rows, columns and channels of the map that is perceived, and the player's cell in it."""
 ZOMBIE, COW = 17, 18
 """Channels after those of the kinds of ground."""
-STEPS = jnp.array([[0, -1], [0, 1], [-1, 0], [1, 0]])
+STEPS = np.array([[0, -1], [0, 1], [-1, 0], [1, 0]])
 """Rows and columns of a step to the left, to the right, up and down."""
 FREE = [BlockType.GRASS.value, BlockType.SAND.value, BlockType.PATH.value]
 HUNGRY, THIRSTY, TIRED = 0.6, 0.6, 0.3

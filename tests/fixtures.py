@@ -81,7 +81,7 @@ def _compiled_code(tmp_path_factory: pytest.TempPathFactory) -> None:
     cache = os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", str(shared / "compiled"))
     jax.config.update("jax_compilation_cache_dir", cache)
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0)
-    # Nobody reads where an operation was written, so one place for each is enough.
+    # JAX notes the frames in which an operation was written. No test reads them, so one is enough.
     jax.config.update("jax_traceback_in_locations_limit", 1)
     os.environ["JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS"] = "0"
     # With a limit, which commands set, JAX writes nothing into a folder that has entries of a process

@@ -1,5 +1,6 @@
 """Gymnasium environments as a habitat: info, errors, seeds, the time limit, and messages."""
 
+from importlib.metadata import version
 from types import SimpleNamespace
 from typing import Any
 
@@ -203,3 +204,17 @@ def test_the_versions_are_those_of_the_packages_that_compute_the_environment() -
     pytest.importorskip("Box2D")
     environment.make("LunarLander-v3", {}).close()
     assert {"gymnasium", "numpy", "box2d"} == set(environment.versions("LunarLander-v3"))
+
+
+def test_the_version_of_the_package_of_an_environment_is_known(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Nothing looks for the package of Gymnasium's own environments, which takes a second."""
+    monkeypatch.setattr(own_code, "owners", lambda: {"ale_py": ["ale-py"]})
+    monkeypatch.setattr(
+        environment, "spec", lambda env: SimpleNamespace(entry_point="ale_py.env:Env")
+    )
+    assert environment.versions("any")["ale-py"] == version("ale-py")
+    monkeypatch.undo()
+    monkeypatch.setattr(own_code, "owners", pytest.fail)
+    assert set(environment.versions("CartPole-v1")) == {"gymnasium", "numpy"}

@@ -46,6 +46,14 @@ def test_a_table_takes_the_place_of_a_value_and_a_value_that_of_a_table() -> Non
     assert base == {"a": {"b": {"c": 1, "d": 2}}}, "the arguments are unchanged"
 
 
+def test_what_is_changed_in_a_copy_of_a_task_changes_no_task(tmp_path: Path) -> None:
+    file = tmp_path / "mine.toml"
+    file.write_text('task = "Pong-survival"\n')
+    for name in ("Pong-survival", str(file)):
+        values_of(name)["habitat"]["game"] = "breakout"
+        assert values_of(name)["habitat"]["game"] == "pong"
+
+
 def test_the_code_of_a_part_is_in_its_name_kind_env_and_food() -> None:
     table: dict[str, Any] = {
         "name": "pond.deep:Pond",
