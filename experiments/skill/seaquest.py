@@ -1,0 +1,390 @@
+"""MinAtar's Seaquest (Young & Tian 2019) in JAX, perceived through the cells around the submarine.
+
+The rules are those of MinAtar 1.0.15, tick by tick; `tests/experiments/test_seaquest.py` compares the
+two. In each group the newest thing has slot 0. A new thing pushes the oldest one out, which has then
+left the screen, since the slots are as many as can be on it at once.
+"""
+
+from types import SimpleNamespace
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+SIDE, FLOOR = 10, 8
+"""cells of a side of the screen, and the lowest row of the sea"""
+OXYGEN, ABOARD = 200, 6
+"""ticks under water, and divers on board, at most"""
+SPAWN, MOVE = 20, 5
+"""ticks between enemies, and between the moves of an enemy, in the beginning"""
+DIVER_SPAWN, DIVER_MOVE, COOL_DOWN, ENEMY_SHOT = 30, 5, 5, 10
+SHOTS, ENEMIES, DIVERS = 4, 40, 3
+LEFT, UP, RIGHT, DOWN, FIRE = range(1, 6)
+SIGHT = 1
+"""cells perceived on each side of the submarine"""
+SEA, GROUND, FRONT, TANK = (16, 42, 74), (24, 26, 32), (255, 220, 80), (120, 190, 250)
+BACK, SHOT, TRAIL, BULLET = (200, 150, 40), (255, 255, 255), (40, 74, 112), (250, 110, 90)
+FISH, SUBMARINE, DIVER = (110, 200, 120), (220, 70, 70), (235, 170, 235)
+
+
+class Shots(NamedTuple):
+    """The player's bullets, each (SHOTS,)."""
+
+    there: Any
+    x: Any
+    y: Any
+    right: Any
+
+
+class Enemies(NamedTuple):
+    """Fish and submarines, each (ENEMIES,). A submarine has at most one bullet on the screen."""
+
+    there: Any
+    x: Any
+    y: Any
+    right: Any
+    armed: Any
+    wait: Any
+    reload: Any
+    bullet: Any
+    """bool: its bullet is on the screen, perhaps longer than itself"""
+    bullet_x: Any
+
+
+class Divers(NamedTuple):
+    """Divers, each (DIVERS,)."""
+
+    there: Any
+    x: Any
+    y: Any
+    right: Any
+    wait: Any
+
+
+class State(NamedTuple):
+    """A game. The submarine is at `x` and `y`; row 0 is the surface."""
+
+    x: Array
+    y: Array
+    right: Array
+    oxygen: Array
+    aboard: Array
+    """divers on board; -1 after six were brought up, as in MinAtar"""
+    surfaced: Array
+    reload: Array
+    enemy_wait: Array
+    diver_wait: Array
+    spawn: Array
+    move: Array
+    ramp: Array
+    shots: Shots
+    enemies: Enemies
+    divers: Divers
+
+
+class Draws(NamedTuple):
+    """What chance decides in a tick: where an enemy and a diver come from, if one is due."""
+
+    enemy_right: Any
+    enemy_armed: Any
+    enemy_row: Any
+    diver_right: Any
+    diver_row: Any
+
+
+def draws(key: Any) -> Draws:
+    """Return the draws of a tick."""
+    word = jax.random.bits(key)
+    rows = 1 + (word % 8), 1 + (word // 8 % 8)
+    enemy_row, diver_row = (row.astype(jnp.int32) for row in rows)
+    return Draws(
+        enemy_right=word // 64 % 2 == 0,
+        enemy_armed=word // 256 % 3 == 0,
+        enemy_row=enemy_row,
+        diver_right=word // 128 % 2 == 0,
+        diver_row=diver_row,
+    )
+
+
+def first() -> State:
+    """Return a game's first state."""
+
+    def none(kind: Any, slots: int) -> Any:
+        flags = ("there", "right", "armed", "bullet")
+        return kind(*(jnp.zeros(slots, bool if f in flags else jnp.int32) for f in kind._fields))
+
+    waits = {"reload": 0, "enemy_wait": SPAWN, "diver_wait": DIVER_SPAWN}
+    levels = {"spawn": SPAWN, "move": MOVE, "ramp": 0}
+    numbers = {"x": 5, "y": 0, "oxygen": OXYGEN, "aboard": 0, **waits, **levels}
+    return State(
+        **{name: jnp.int32(number) for name, number in numbers.items()},
+        right=jnp.bool_(False),
+        surfaced=jnp.bool_(True),
+        shots=none(Shots, SHOTS),
+        enemies=none(Enemies, ENEMIES),
+        divers=none(Divers, DIVERS),
+    )
+
+
+def tick(state: State, action: Array, drawn: Draws) -> tuple[State, Array, Array]:
+    """Return the state after a tick, the points of the tick, and whether the game is over."""
+    state = _steered(_spawned(state, drawn), action)
+    state, points = _shots_fly(state)
+    state = _divers_move(state)
+    state, more, killed = _enemies_move(state)
+    state, delivered, drowned = _breathe(state)
+    return state, points + more + delivered, killed | drowned
+
+
+def _spawned(state: State, drawn: Draws) -> State:
+    """Let an enemy and a diver come in, if they are due and no enemy swims against it in its row."""
+    due, others = state.enemy_wait == 0, state.enemies
+    against = others.there & (others.y == drawn.enemy_row) & (others.right != drawn.enemy_right)
+    enemy = Enemies(
+        there=True,
+        x=_start(drawn.enemy_right),
+        y=drawn.enemy_row,
+        right=drawn.enemy_right,
+        armed=drawn.enemy_armed,
+        wait=state.move,
+        reload=ENEMY_SHOT,
+        bullet=False,
+        bullet_x=0,
+    )
+    diver_due, right = state.diver_wait == 0, drawn.diver_right
+    diver = Divers(True, _start(right), drawn.diver_row, right, DIVER_MOVE)
+    return state._replace(
+        enemies=_pushed(due & ~against.any(), enemy, others),
+        enemy_wait=jnp.where(due, state.spawn, state.enemy_wait),
+        divers=_pushed(diver_due, diver, state.divers),
+        diver_wait=jnp.where(diver_due, DIVER_SPAWN, state.diver_wait),
+    )
+
+
+def _start(right: Any) -> Any:
+    """Return the column in which something that moves right, or else left, comes in."""
+    return jnp.where(right, 0, SIDE - 1)
+
+
+def _pushed(comes: Array, new: Any, group: Any) -> Any:
+    """Return a group with a new thing in slot 0, if it comes."""
+
+    def push(value: Any, slots: Array) -> Array:
+        value = jnp.asarray(value, slots.dtype)
+        return jnp.where(comes, jnp.concatenate([value[None], slots[:-1]]), slots)
+
+    return jax.tree.map(push, new, group)
+
+
+def _steered(state: State, action: Array) -> State:
+    """Let the player move or shoot."""
+    fires = (action == FIRE) & (state.reload == 0)
+    shot = Shots(True, state.x, state.y, state.right)
+    across = (action == RIGHT).astype(jnp.int32) - (action == LEFT)
+    along = (action == DOWN).astype(jnp.int32) - (action == UP)
+    return state._replace(
+        shots=_pushed(fires, shot, state.shots),
+        reload=jnp.where(fires, COOL_DOWN, state.reload),
+        x=jnp.clip(state.x + across, 0, SIDE - 1),
+        y=jnp.clip(state.y + along, 0, FLOOR),
+        right=jnp.where(across == 0, state.right, across > 0),
+    )
+
+
+def _ahead(x: Array, right: Array, moves: Array) -> Array:
+    return x + jnp.where(moves, jnp.where(right, 1, -1), 0)
+
+
+def _on_screen(x: Array) -> Array:
+    return (x >= 0) & (x < SIDE)
+
+
+def _shots_fly(state: State) -> tuple[State, Array]:
+    """Let the player's bullets fly; the newest hits first, and fish before submarines."""
+    shots, enemies = state.shots, state.enemies
+    x = _ahead(shots.x, shots.right, shots.there)
+    shots = shots._replace(x=x, there=shots.there & _on_screen(x))
+    slots = jnp.arange(ENEMIES) + ENEMIES * ~enemies.armed
+    return _hits(state, shots, enemies, enemies.there, slots, range(SHOTS))
+
+
+def _hits(
+    state: State, shots: Shots, enemies: Enemies, may: Array, rank: Array, order: Any
+) -> tuple[State, Array]:
+    """Let each bullet hit, of the enemies in its cell that it may hit, the one with the highest rank."""
+    there, flying, points = enemies.there, shots.there, jnp.int32(0)
+    for shot in order:
+        in_cell = (enemies.x == shots.x[shot]) & (enemies.y == shots.y[shot])
+        found = in_cell & there & may & flying[shot]
+        there &= ~(found & (rank == jnp.where(found, rank, -1).max()))
+        flying = flying.at[shot].set(flying[shot] & ~found.any())
+        points += found.any()
+    shots, enemies = shots._replace(there=flying), enemies._replace(there=there)
+    return state._replace(shots=shots, enemies=enemies), points
+
+
+def _divers_move(state: State) -> State:
+    """Let divers move; the submarine takes those that it touches, the newest first, if they fit."""
+    divers, aboard = state.divers, state.aboard
+    due = divers.wait == 0
+    before = _touched(state, divers)
+    x = _ahead(divers.x, divers.right, due)
+    after = due & _touched(state, divers._replace(x=x))
+    there = divers.there & (~due | _on_screen(x))
+    taken = []
+    for diver in range(DIVERS):
+        takes = (before | after)[diver] & (aboard < ABOARD)
+        aboard += takes
+        taken.append(takes)
+    there &= ~jnp.stack(taken)
+    wait = jnp.where(due, DIVER_MOVE, divers.wait - 1)
+    return state._replace(divers=divers._replace(x=x, wait=wait, there=there), aboard=aboard)
+
+
+def _touched(state: State, group: Any) -> Array:
+    """Return which of a group are in the submarine's cell."""
+    return group.there & (group.x == state.x) & (group.y == state.y)
+
+
+def _enemies_move(state: State) -> tuple[State, Array, Array]:
+    """Let enemies and their bullets move; return the points, and whether the player is killed."""
+    enemies = state.enemies
+    due, touched = enemies.there & (enemies.wait == 0), _touched(state, enemies)
+    x = _ahead(enemies.x, enemies.right, due)
+    shoots = enemies.there & enemies.armed & (enemies.reload == 0)
+    bullet_x = jnp.where(shoots, x, enemies.bullet_x)
+    bullet = enemies.bullet | shoots
+    in_row = enemies.y == state.y
+    hit = bullet & in_row & (bullet_x == state.x)
+    bullet_x = _ahead(bullet_x, enemies.right, bullet)
+    hit |= bullet & in_row & (bullet_x == state.x)
+    moved = enemies._replace(
+        x=x,
+        there=enemies.there & (~due | _on_screen(x)),
+        wait=jnp.where(due, state.move, enemies.wait - 1),
+        reload=jnp.where(shoots, ENEMY_SHOT, enemies.reload - 1),
+        bullet=bullet & _on_screen(bullet_x),
+        bullet_x=bullet_x,
+    )
+    reached = _touched(state, moved)
+    newest = ENEMIES - jnp.arange(ENEMIES) + ENEMIES * moved.armed
+    oldest_first = reversed(range(SHOTS))
+    state, points = _hits(state, state.shots, moved, due & ~reached, newest, oldest_first)
+    return state, points, (touched | reached | hit).any()
+
+
+def _breathe(state: State) -> tuple[State, Array, Array]:
+    """Let waits and oxygen go down, or fill the tank at the surface; return points and who drowns."""
+    under, drowned = state.y > 0, state.oxygen <= 0
+    comes_up = ~under & ~state.surfaced
+    drowned |= comes_up & (state.aboard == 0)
+    comes_up &= state.aboard != 0
+    full = state.aboard == ABOARD
+    points = jnp.where(comes_up & full, state.oxygen * 10 // OXYGEN, 0)
+    harder = comes_up & ((state.spawn > 1) | (state.move > 2))
+    faster = harder & (state.move > 2) & (state.ramp % 2 == 1)
+    state = state._replace(
+        oxygen=jnp.where(comes_up, OXYGEN, state.oxygen - under),
+        aboard=jnp.where(comes_up, jnp.where(full, 0, state.aboard) - 1, state.aboard),
+        surfaced=~under & (state.surfaced | comes_up),
+        reload=jnp.maximum(state.reload - 1, 0),
+        enemy_wait=jnp.maximum(state.enemy_wait - 1, 0),
+        diver_wait=jnp.maximum(state.diver_wait - 1, 0),
+        spawn=state.spawn - (harder & (state.spawn > 1)),
+        move=state.move - faster,
+        ramp=state.ramp + harder,
+    )
+    return state, points, drowned
+
+
+def cells(state: State, rows: Array, columns: Array) -> Array:
+    """Return what is in cells, bool (rows, columns, 8).
+
+    The first channel is true beyond the screen, the others are MinAtar's: the submarine's back, its
+    bullets, trails, the enemies' bullets, fish, enemy submarines, divers.
+    """
+    enemies, divers, shots = state.enemies, state.divers, state.shots
+
+    def shown(there: Array, x: Array, y: Array) -> Array:
+        in_row, in_column = y == rows[:, None], there & (x == columns[:, None])
+        return (in_row[:, None] & in_column).any(-1)
+
+    def trail(group: Enemies | Divers) -> Array:
+        x = _ahead(group.x, ~group.right, group.there)
+        return shown(group.there & _on_screen(x), x, group.y)
+
+    back = _ahead(state.x, ~state.right, jnp.bool_(True))
+    channels = (
+        ~_on_screen(rows)[:, None] | ~_on_screen(columns),
+        shown(jnp.bool_(True), back[None], state.y[None]),
+        shown(shots.there, shots.x, shots.y),
+        trail(enemies) | trail(divers),
+        shown(enemies.bullet, enemies.bullet_x, enemies.y),
+        shown(enemies.there & ~enemies.armed, enemies.x, enemies.y),
+        shown(enemies.there & enemies.armed, enemies.x, enemies.y),
+        shown(divers.there, divers.x, divers.y),
+    )
+    return jnp.stack(channels, axis=-1)
+
+
+def gauges(state: State) -> tuple[Array, Array]:
+    """Return the filled cells of the gauges of oxygen, bool (10,), and of divers on board, bool (6,)."""
+    return jnp.arange(SIDE) < state.oxygen * 10 // OXYGEN, jnp.arange(ABOARD) < state.aboard
+
+
+@jax.jit
+def _screen(state: State) -> Array:
+    """Return the colours of the screen, uint8 (10, 10, 3), with the gauges in the last row."""
+    every = jnp.arange(SIDE)
+    picture = jnp.where((every <= FLOOR)[:, None, None], jnp.array(SEA), jnp.array(GROUND))
+    picture = jnp.broadcast_to(picture, (SIDE, SIDE, 3))
+    shown = cells(state, every, every)[:, :, 1:]
+    for channel, colour in enumerate((BACK, SHOT, TRAIL, BULLET, FISH, SUBMARINE, DIVER)):
+        picture = jnp.where(shown[:, :, channel, None], jnp.array(colour), picture)
+    picture = picture.at[state.y, state.x].set(jnp.array(FRONT))
+    oxygen, _ = gauges(state)
+    aboard = (every < SIDE - 1) & (every >= SIDE - 1 - state.aboard)
+    for gauge, colour in ((oxygen, TANK), (aboard, DIVER)):
+        picture = picture.at[-1].set(jnp.where(gauge[:, None], jnp.array(colour), picture[-1]))
+    return picture.astype(jnp.uint8)
+
+
+class Seaquest:
+    """Seaquest with gymnax's interface. Senses are the cells around the submarine, and both gauges."""
+
+    name = "Seaquest-MinAtar"
+    action_set = np.arange(6)
+    default_params = SimpleNamespace()
+
+    def reset_env(self, key: Any, params: Any) -> tuple[Array, State]:
+        """Return the first senses and state."""
+        state = first()
+        return senses(state), state
+
+    def step_env(self, key: Any, state: State, action: Array, params: Any) -> tuple:
+        """Return senses, state, points, whether the game is over, and whether it is `under` water."""
+        state, points, over = tick(state, action, draws(key))
+        return senses(state), state, points, over, {"under": state.y > 0}
+
+    def action_space(self, params: Any) -> Any:
+        """Return MinAtar's actions: nothing, left, up, right, down, fire."""
+        return SimpleNamespace(n=6, shape=(), dtype=jnp.int32)
+
+    def observation_space(self, params: Any) -> Any:
+        """Return the bounds of the senses."""
+        return SimpleNamespace(
+            low=0.0, high=1.0, shape=jax.eval_shape(lambda: senses(first())).shape
+        )
+
+    def picture(self, state: State, params: Any) -> np.ndarray:
+        """Return the screen."""
+        return np.kron(np.asarray(_screen(state)), np.ones((40, 40, 1), np.uint8))
+
+
+def senses(state: State) -> Array:
+    """Return the cells that a player perceives and the gauges, bool (S,)."""
+    around = jnp.arange(-SIGHT, SIGHT + 1)
+    near = cells(state, state.y + around, state.x + around)
+    return jnp.concatenate([near.ravel(), *gauges(state)])
