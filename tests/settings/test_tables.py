@@ -46,6 +46,24 @@ def test_a_table_takes_the_place_of_a_value_and_a_value_that_of_a_table() -> Non
     assert base == {"a": {"b": {"c": 1, "d": 2}}}, "the arguments are unchanged"
 
 
+def test_another_brain_takes_no_settings_for_the_blocks_of_the_old_one() -> None:
+    base = {
+        "brain": {"kind": "recurrent"},
+        "mutation": {"scale": 1, "blocks": {"recurrent": {"scale": 2}, "body": {"scale": 3}}},
+    }
+    other = merged(
+        base, {"brain": {"kind": "linear"}, "mutation": {"blocks": {"output": {"scale": 4}}}}
+    )
+    assert other["mutation"] == {
+        "scale": 1,
+        "blocks": {"body": {"scale": 3}, "output": {"scale": 4}},
+    }
+    for same in ({"hidden": 8}, {"kind": "recurrent"}):
+        assert merged(base, {"brain": same})["mutation"] == base["mutation"]
+    assert "recurrent" in base["mutation"]["blocks"], "the arguments are unchanged"
+    assert load("Pong-survival", {"brain": {"kind": "linear"}}).mutation["blocks"] == {}
+
+
 def test_what_is_changed_in_a_copy_of_a_task_changes_no_task(tmp_path: Path) -> None:
     file = tmp_path / "mine.toml"
     file.write_text('task = "Pong-survival"\n')

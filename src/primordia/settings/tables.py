@@ -24,6 +24,8 @@ DEFAULTS = {"brain": "recurrent", "mutation": "gaussian"}
 """Default parts of tables that name no part: those of the paper."""
 
 
+BODY = "body"
+"""The block of the genes of an inherited body; see `habitats.traits`."""
 CODE = ("env", "food")
 """Settings of a part, beside its name, that may be `module:name`."""
 
@@ -99,16 +101,34 @@ def parsed_toml(text: str) -> dict[str, Any]:
 def merged(base: dict[str, Any], change: dict[str, Any]) -> dict[str, Any]:
     """Return `base` with the values of `change`, table by table.
 
-    If a table of `change` names another part, this table replaces the whole table of `base`.
+    If a table of `change` names another part, this table replaces the whole table of `base`. With
+    another brain, the mutation's settings for blocks of the old brain go.
     """
     result = dict(base)
+    if _exchanged("brain", base.get("brain", {}), change.get("brain")):
+        result |= _without_blocks(base.get("mutation", {}))
     for name, value in change.items():
-        old, key = result.get(name), PARTS.get(name)
+        old = result.get(name)
         if isinstance(value, dict) and isinstance(old, dict):
-            exchanged = key in value and old.get(key, DEFAULTS.get(name)) != value[key]
-            value = value if exchanged else merged(old, value)
+            value = value if _exchanged(name, old, value) else merged(old, value)
         result[name] = value
     return result
+
+
+def _exchanged(name: str, old: Any, new: Any) -> bool:
+    """Return whether a new table of this name names another part than the old one does."""
+    key = PARTS.get(name)
+    if key is None or not isinstance(old, dict) or not isinstance(new, dict) or key not in new:
+        return False
+    return old.get(key, DEFAULTS.get(name)) != new[key]
+
+
+def _without_blocks(mutation: Any) -> dict[str, Any]:
+    """Return a task's table `mutation` without blocks of a brain; that of inherited bodies stays."""
+    if not isinstance(mutation, dict) or not isinstance(blocks := mutation.get("blocks"), dict):
+        return {}
+    own = {name: values for name, values in blocks.items() if name == BODY}
+    return {"mutation": {**mutation, "blocks": own}}
 
 
 def code_of(table: dict[str, Any], key: str) -> list[str]:
