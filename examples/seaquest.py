@@ -1,6 +1,6 @@
 """MinAtar's Seaquest (Young & Tian 2019) in JAX, perceived through the cells around the submarine.
 
-The rules are those of MinAtar 1.0.15, tick by tick; `tests/experiments/test_seaquest.py` compares the
+The rules are those of MinAtar 1.0.15, tick by tick; `tests/test_seaquest.py` compares the
 two. In each group the newest thing has slot 0. A new thing pushes the oldest one out, which has then
 left the screen, since the slots are as many as can be on it at once.
 """

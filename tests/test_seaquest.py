@@ -1,4 +1,4 @@
-"""The Seaquest of the experiments is MinAtar's, tick by tick."""
+"""The Seaquest of the examples is MinAtar's, tick by tick."""
 
 from typing import Any
 
@@ -6,8 +6,8 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from experiments.skill import seaquest
-from experiments.skill.seaquest import ABOARD, SIDE, Draws, State
+from examples import seaquest
+from examples.seaquest import ABOARD, SIDE, Draws, State
 from minatar.environments.seaquest import Env  # type: ignore[import-untyped]
 
 CHANNELS = {"back": 1, "shot": 2, "trail": 3, "bullet": 4, "fish": 5, "submarine": 6, "diver": 9}
