@@ -3,8 +3,9 @@
     python experiments/games.py experiments/atari/*.toml experiments/robots/*.toml
 
 The experiments must have been run (`primordia experiment`). An Atari player plays in four ways: the game
-of its task; games with sticky buttons and no-ops at the start; the game of its task with frozen senses;
-and the games with sticky buttons blindly, with the buttons that it pressed in the game of its task. The
+of its task, unless the task has no-ops; games with sticky buttons and no-ops at the start; the game of its
+task with frozen senses; and the games with sticky buttons blindly, with the buttons that it pressed in the
+game of its task. The
 games of robots and poles all begin differently. Robots and organisms of gymnax play fresh games in three
 ways: seeing, with frozen senses, and blindly. Pole balancers play fresh games.
 
@@ -73,6 +74,8 @@ def played(name: str, run: Records, group: Group) -> list[dict[str, Any]]:
     """Let organisms play and return a row for each world and way."""
     habitat, rows = str(run.config.habitat["name"]), []
     ways = WAYS[habitat]
+    if run.config.habitat.get("noops"):  # then its own games are such games
+        ways = {way: options for way, options in ways.items() if way != "own game"}
     if group.chosen_from == 1 and habitat not in COMPILED:
         ways = {UNKNOWN[habitat]: ways[UNKNOWN[habitat]]}
     for way, options in ways.items():

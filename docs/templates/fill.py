@@ -212,14 +212,18 @@ def budget(name: str, task: str) -> str:
     return f"{int(rows(name).ticks.max()) * config.load(task).cells / 1e6:.2g}"
 
 
-def planned(name: str) -> str:
-    """Return the organism-ticks of a world of an experiment's file whose cells are always full, in
-    millions."""
+def plan(name: str) -> config.Config:
+    """Return the settings that all arms of an experiment share."""
     folder, stem = name.split("/")
-    text = (ROOT / "experiments" / folder / f"{stem}.toml").read_text("utf-8")
-    file = tomllib.loads(text)
-    cells = file.get("cells") or config.load(file["task"]).cells
-    return f"{file['stop']['ticks'] * cells / 1e6:.2g}"
+    file = tomllib.loads((ROOT / "experiments" / folder / f"{stem}.toml").read_text("utf-8"))
+    task, own = file["task"], {key: file[key] for key in file.keys() & config.Config.model_fields}
+    return config.load(task, {key: own[key] for key in own if key != "task"})
+
+
+def planned(name: str) -> str:
+    """Return the organism-ticks of a world of an experiment whose cells are always full, in millions."""
+    settings = plan(name)
+    return f"{(settings.stop.ticks or 0) * settings.cells / 1e6:.2g}"
 
 
 def searched(name: str, method: str, way: str, outcome: str = "score") -> str:
@@ -268,6 +272,7 @@ def pages() -> dict[Path, str]:
         sign_test=sign_test,
         ratio=ratio,
         budget=budget,
+        plan=plan,
         planned=planned,
         searched=searched,
         ahead=ahead,
