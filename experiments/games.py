@@ -3,11 +3,11 @@
     python experiments/games.py experiments/atari/*.toml experiments/robots/*.toml
 
 The experiments must have been run (`primordia experiment`). An Atari player plays in four ways: the game
-of its task, unless the task has no-ops; games with sticky buttons and no-ops at the start; the game of its
-task with frozen senses; and the games with sticky buttons blindly, with the buttons that it pressed in the
-game of its task. The
-games of robots and poles all begin differently. Robots and organisms of gymnax play fresh games in three
-ways: seeing, with frozen senses, and blindly. Pole balancers play fresh games.
+of its task; games with sticky buttons and no-ops at the start; the game of its task with frozen senses;
+and the games with sticky buttons blindly, with the buttons that it pressed in the game of its task. If
+the task has no-ops, the first way is left out. The games of robots and poles all begin differently.
+Robots and organisms of gymnax play fresh games in three ways: seeing, with frozen senses, and blindly.
+Pole balancers play fresh games.
 
 The longest-lived of many may be as good by luck as by descent. So all organisms that are alive at the
 end play one unknown game each, in gymnax in each of the three ways. As many founders as each world of

@@ -4,7 +4,8 @@
 
 Nothing has to be run before. Each player plays GAMES games of at most TICKS ticks: in Breakout one stays
 under the ball, with and without sticky actions, and another goes where the ball will be in the next tick;
-in Space Invaders one shoots, and dodges bullets that it sees; in Freeway one always goes up.
+in Space Invaders one shoots, and dodges bullets that it sees; in Freeway one always goes up; in Seaquest
+one shoots, takes divers that it meets, and brings them up when little oxygen is left.
 The table goes to `experiments/skill/results/minatar-handmade`.
 """
 
@@ -23,12 +24,17 @@ from primordia.comparison.tables import spread_text
 from primordia.experiments.results import table
 
 GAMES = 200
-TICKS = {"Breakout": 1_000, "Freeway": 2_500, "SpaceInvaders": 1_000}
-"""Length of a game, which is the environment's own."""
+TICKS = {"Breakout": 1_000, "Freeway": 2_500, "Seaquest": 5_000, "SpaceInvaders": 1_000}
+"""Length of a game, which is the environment's own; Seaquest has none."""
+TASKS = dict.fromkeys(TICKS, "MinAtar-{}-survival") | {"Seaquest": "examples/seaquest.toml"}
 PADDLE, BALL, TRAIL = range(3)
 EDGE, BULLET = 0, 5
 NOOP, LEFT, RIGHT, SHOOT = range(4)
 UP = 1
+BEYOND, BACK, THREATS, DIVER = 0, 1, slice(4, 7), 7
+GO_LEFT, GO_UP, GO_RIGHT, GO_DOWN, FIRE = range(1, 6)
+LOW, ABOARD = 2, 10
+"""Cells of Seaquest's gauges: empty below 60 ticks of oxygen; full if a diver is on board."""
 RESULTS = Path(__file__).parent / "skill" / "results" / "minatar-handmade"
 
 
@@ -64,6 +70,25 @@ def dodge(senses: jax.Array) -> jax.Array:
     return jnp.where(danger, jnp.where(blocked, RIGHT, LEFT), SHOOT).astype(jnp.int32)
 
 
+def dive(senses: jax.Array) -> jax.Array:
+    """Return the button of a submarine that perceives the 3 x 3 cells around it, int32 (N,)."""
+    near, gauges = senses[:, :72].reshape(-1, 3, 3, 8) > 0, senses[:, 72:] > 0
+    threat, diver, looks_left = near[..., THREATS].any(-1), near[..., DIVER], near[:, 1, 2, BACK]
+    left, right, free_above = threat[:, 1, 0], threat[:, 1, 2], ~threat[:, 0].any(1)
+    rules = (  # the first that holds
+        (near[:, 0, :, BEYOND].all(1), GO_DOWN),
+        (~gauges[:, LOW] & gauges[:, ABOARD], GO_UP),
+        (jnp.where(looks_left, left, right), FIRE),
+        (jnp.where(looks_left, right, left) & free_above, GO_UP),
+        (jnp.where(looks_left, right, left), GO_DOWN),
+        (diver[:, 0].any(1) & free_above, GO_UP),
+        (diver[:, 2].any(1) & ~threat[:, 2].any(1) & ~near[:, 2, :, BEYOND].all(1), GO_DOWN),
+        (diver[:, 1, 2], GO_RIGHT),
+        (diver[:, 1, 0], GO_LEFT),
+    )
+    return jnp.select([when for when, _ in rules], [button for _, button in rules], FIRE)
+
+
 def up(senses: jax.Array) -> jax.Array:
     """Return the button that goes up, int32 (N,)."""
     return jnp.full(len(senses), UP, jnp.int32)
@@ -75,6 +100,7 @@ PLAYERS: tuple[tuple[str, str, float, Callable], ...] = (
     ("stays under the ball, nothing sticks", "Breakout", 0.0, follow),
     ("shoots, and dodges bullets", "SpaceInvaders", 0.1, dodge),
     ("always goes up", "Freeway", 0.1, up),
+    ("shoots, and brings divers up", "Seaquest", 0.1, dive),
 )
 
 
@@ -83,7 +109,7 @@ def main() -> None:
     device.prepare()
     rows, lines = [], []
     for name, game, sticky, act in PLAYERS:
-        task, habitat = f"MinAtar-{game}-survival", {"sticky": sticky}
+        task, habitat = TASKS[game].format(game), {"sticky": sticky}
         lived, score = played(task, habitat, TICKS[game], act)
         rows += [
             {"player": name, "game": game, "sticky": sticky, "lifespan": int(a), "score": float(b)}
