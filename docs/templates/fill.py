@@ -213,11 +213,12 @@ def budget(name: str, task: str) -> str:
 
 
 def plan(name: str) -> config.Config:
-    """Return the settings that all arms of an experiment share."""
+    """Return the settings of an experiment's task, with the experiment's own cells and stop."""
     folder, stem = name.split("/")
     file = tomllib.loads((ROOT / "experiments" / folder / f"{stem}.toml").read_text("utf-8"))
-    task, own = file["task"], {key: file[key] for key in file.keys() & config.Config.model_fields}
-    return config.load(task, {key: own[key] for key in own if key != "task"})
+    task = config.load(file["task"])
+    stop = task.stop.model_copy(update=file["stop"])
+    return task.model_copy(update={"cells": file.get("cells", task.cells), "stop": stop})
 
 
 def planned(name: str) -> str:
