@@ -17,6 +17,7 @@ import pandas as pd
 from by_world import Row, dots, illustrate, measure
 from matplotlib.figure import Figure
 
+from primordia.brains.layout import BODY
 from primordia.comparison.pairs import sign_test
 from primordia.experiments.results import table
 from primordia.figures import style
@@ -25,7 +26,6 @@ from primordia.history.series import spaced
 from primordia.organism.playing.games import lifespans_in_games
 from primordia.organism.playing.players import founders_of, players_of
 from primordia.runs.records import Records
-from primordia.settings.tables import BODY
 
 EACH, GAMES, TICKS, LATE = 20, 3, 5_000, 0.5
 SHADOW, OWN, USUAL, FOUNDERS = "shadow of", "own body", "founder's body", "founders"

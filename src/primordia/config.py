@@ -14,6 +14,7 @@ from pydantic import Field, PrivateAttr, ValidationError, model_validator
 from primordia.brains import contract as brains
 from primordia.brains import genomes
 from primordia.brains.contract import Brain
+from primordia.brains.exchange import changed
 from primordia.brains.layout import Layout
 from primordia.by_island import by_island, habitats_of, rates_of_islands
 from primordia.errors import InputError
@@ -52,9 +53,8 @@ from primordia.settings.tables import (
     NONE,
     PARTS,
     code_of,
-    merged,
+    layers_of,
     replaced,
-    values_of,
     with_full_paths,
 )
 from primordia.settings.values import check_values
@@ -273,7 +273,7 @@ def load(task: str | Path, settings: dict[str, Any] | None = None) -> Config:
         InputError: there is no such task or file, or a setting is unknown or out of range.
     """
     name, changes = os.fspath(task), with_full_paths(Path(), settings or {})
-    return validated(merged(values_of(name), changes), source=name)
+    return validated(changed(changed(*layers_of(name)), changes), source=name)
 
 
 def validated(values: dict[str, Any], source: str) -> Config:

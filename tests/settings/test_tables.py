@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+from primordia.brains.exchange import changed
 from primordia.config import load, parsed
 from primordia.errors import InputError
 from primordia.settings.tables import (
@@ -46,22 +47,38 @@ def test_a_table_takes_the_place_of_a_value_and_a_value_that_of_a_table() -> Non
     assert base == {"a": {"b": {"c": 1, "d": 2}}}, "the arguments are unchanged"
 
 
-def test_another_brain_takes_no_settings_for_the_blocks_of_the_old_one() -> None:
-    base = {
-        "brain": {"kind": "recurrent"},
-        "mutation": {"scale": 1, "blocks": {"recurrent": {"scale": 2}, "body": {"scale": 3}}},
+def test_another_brain_keeps_the_settings_for_the_blocks_that_it_has(tmp_path: Path) -> None:
+    blocks = {
+        name: {"scale": number} for number, name in enumerate(("recurrent", "output", "body"))
     }
-    other = merged(
-        base, {"brain": {"kind": "linear"}, "mutation": {"blocks": {"output": {"scale": 4}}}}
-    )
-    assert other["mutation"] == {
-        "scale": 1,
-        "blocks": {"body": {"scale": 3}, "output": {"scale": 4}},
-    }
-    for same in ({"hidden": 8}, {"kind": "recurrent"}):
-        assert merged(base, {"brain": same})["mutation"] == base["mutation"]
-    assert "recurrent" in base["mutation"]["blocks"], "the arguments are unchanged"
-    assert load("Pong-survival", {"brain": {"kind": "linear"}}).mutation["blocks"] == {}
+    task = {"brain": {"kind": "recurrent"}, "mutation": {"scale": 1, "blocks": blocks}}
+    linear: dict[str, Any] = {"brain": {"kind": "linear"}}
+    other = changed(task, linear | {"mutation": {"blocks": {"output": {"copies": 4}}}})
+    own = {"output": {"scale": 1, "copies": 4}, "body": {"scale": 2}}
+    assert other["mutation"] == {"scale": 1, "blocks": own}
+    same: list[dict[str, Any]] = [{"hidden": 8}, {"kind": "recurrent"}, {"kind": "unknown"}]
+    for brain in same:
+        assert changed(task, {"brain": brain})["mutation"] == task["mutation"]
+    of_the_default = changed({"mutation": task["mutation"]}, linear)
+    assert of_the_default["mutation"]["blocks"].keys() == {"output", "body"}
+    assert len(blocks) == 3, "the arguments are unchanged"
+    file = tmp_path / "mine.toml"
+    file.write_text('task = "Pong-survival"\n[brain]\nkind = "gated"\n')
+    for mine in (load(file), load("Pong-survival", linear)):
+        assert mine.mutation["blocks"] == {}
+    for wrong in (
+        {"brain": 3},
+        {"brain": {"kind": ["linear"]}},
+        {"brain": "linear"},
+        {"mutation": 3},
+    ):
+        with pytest.raises(InputError):
+            load(file, wrong)
+    with pytest.raises(InputError, match="this brain has no block 'recurrent'"):
+        load(
+            "CartPole-survival",
+            {"brain": {"kind": "linear"}, "mutation": {"blocks": {"recurrent": {}}}},
+        )
 
 
 def test_what_is_changed_in_a_copy_of_a_task_changes_no_task(tmp_path: Path) -> None:

@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from primordia.assays.subjects import GAMES, TICKS, Subjects
+from primordia.brains.layout import BODY
 from primordia.organism.playing.games import Players, lifespans_in_games
 from primordia.organism.playing.seats import Frozen
-from primordia.settings.tables import BODY
 
 
 @dataclass(frozen=True)

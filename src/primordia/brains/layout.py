@@ -12,13 +12,14 @@ import numpy as np
 from jax import Array
 
 from primordia.errors import InputError
-from primordia.settings.tables import BODY
 
 Shape: TypeAlias = tuple[int, ...]
 Arrays = TypeVar("Arrays", Array, np.ndarray)
 
 NAME = "[A-Za-z0-9_-]+"
 """Regular expression of a block's name, which becomes a part of names of settings and columns."""
+BODY = "body"
+"""The block of a body's genes; see `habitats.traits`."""
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,12 @@ from typing import Any
 from pydantic import Field
 from pydantic_core import PydanticUndefined
 
+from primordia.brains.exchange import changed
 from primordia.config import CONTRACTS, Config
 from primordia.habitats.around import innermost
 from primordia.runs.archive import Archive
 from primordia.settings.fields import choices, setting_fields
-from primordia.settings.tables import DEFAULTS, NONE, PARTS, merged, replaced, values_of
+from primordia.settings.tables import DEFAULTS, NONE, PARTS, layers_of, replaced
 
 
 def setting_rows(task: str | None, given: dict[str, Any]) -> list[tuple[str, str]]:
@@ -22,7 +23,7 @@ def setting_rows(task: str | None, given: dict[str, Any]) -> list[tuple[str, str
         task: name of a task or a file; None for the defaults, without a habitat.
         given: settings given as flags; if these name another brain, that brain's settings are shown.
     """
-    values = merged(values_of(task) if task else {}, given)
+    values = changed(changed(*layers_of(task)) if task else {}, given)
     fields: dict[str, Any] = {}
     for path, field in setting_fields(Config).items():
         fields |= _of_part(path, values) if path in PARTS else {path: field}

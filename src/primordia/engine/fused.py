@@ -4,6 +4,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array, lax
 
+from primordia.brains.layout import BODY
 from primordia.compiled import shared
 from primordia.engine.state import Limits, State, filled, named_leaves, running, ticks_left
 from primordia.habitats.archipelago import ArchipelagoInJax, Parts, split
@@ -18,7 +19,6 @@ from primordia.law.population import settle
 from primordia.law.tick import Fates, judge, keys_of, no_fates, rest, think
 from primordia.law.world import World
 from primordia.random.keys import Purpose, stream
-from primordia.settings.tables import BODY
 
 
 class FusedChunks:

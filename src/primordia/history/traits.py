@@ -4,11 +4,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from primordia.brains.layout import BODY
 from primordia.habitats.traits import Traits
 from primordia.history import pedigree
 from primordia.history.series import spaced
 from primordia.runs.records import Records
-from primordia.settings.tables import BODY
 
 AT_ONCE = 2**17
 """Largest number of genomes that are in memory at once."""

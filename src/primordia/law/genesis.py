@@ -8,6 +8,7 @@ import numpy as np
 from jax import Array
 
 from primordia.brains.contract import Genome
+from primordia.brains.layout import BODY
 from primordia.law import moments
 from primordia.law.act import Acts
 from primordia.law.law import Law
@@ -15,7 +16,6 @@ from primordia.law.seasons import ratchets
 from primordia.law.world import Cause, Looks, Organisms, World, Worlds
 from primordia.random.keys import Purpose, bits, stream
 from primordia.random.wide import Wide, never, wide, zero
-from primordia.settings.tables import BODY
 
 
 def begin(law: Law, seeds: np.ndarray) -> World:

@@ -24,8 +24,6 @@ DEFAULTS = {"brain": "recurrent", "mutation": "gaussian"}
 """Default parts of tables that name no part: those of the paper."""
 
 
-BODY = "body"
-"""The block of the genes of an inherited body; see `habitats.traits`."""
 CODE = ("env", "food")
 """Settings of a part, beside its name, that may be `module:name`."""
 
@@ -52,17 +50,22 @@ def values_of(task: str) -> dict[str, Any]:
     Raises:
         InputError: there is no such task, file or environment, or the file cannot be read.
     """
+    return merged(*layers_of(task))
+
+
+def layers_of(task: str) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return settings as `values_of` does, and apart from them what a file changes in a built-in task."""
     known = _shipped()
     if task in known:
-        return deepcopy(known[task])
+        return deepcopy(known[task]), {}
     if doors.is_door(task):
-        return doors.task(task).table
+        return doors.task(task).table, {}
     if task.endswith(".toml") or isfile(task):
         values = from_toml(Path(task))
         name = str(values.get("task"))
         if name not in known and "habitat" not in values and (near := did_you_mean(name, [*known])):
             raise InputError(f"{task}: there is no task {name!r}{near}")
-        return merged(deepcopy(known.get(name, {})), values)
+        return deepcopy(known.get(name, {})), values
     raise InputError(
         f"there is no task {task!r}{did_you_mean(task, list(known))}; give a name that `primordia"
         " tasks` lists, a file FILE.toml, or an environment gym:NAME"
@@ -101,34 +104,23 @@ def parsed_toml(text: str) -> dict[str, Any]:
 def merged(base: dict[str, Any], change: dict[str, Any]) -> dict[str, Any]:
     """Return `base` with the values of `change`, table by table.
 
-    If a table of `change` names another part, this table replaces the whole table of `base`. With
-    another brain, the mutation's settings for blocks of the old brain go.
+    If a table of `change` names another part, this table replaces the whole table of `base`.
     """
     result = dict(base)
-    if _exchanged("brain", base.get("brain", {}), change.get("brain")):
-        result |= _without_blocks(base.get("mutation", {}))
     for name, value in change.items():
         old = result.get(name)
         if isinstance(value, dict) and isinstance(old, dict):
-            value = value if _exchanged(name, old, value) else merged(old, value)
+            value = value if names_another(name, old, value) else merged(old, value)
         result[name] = value
     return result
 
 
-def _exchanged(name: str, old: Any, new: Any) -> bool:
+def names_another(name: str, old: Any, new: Any) -> bool:
     """Return whether a new table of this name names another part than the old one does."""
     key = PARTS.get(name)
     if key is None or not isinstance(old, dict) or not isinstance(new, dict) or key not in new:
         return False
-    return old.get(key, DEFAULTS.get(name)) != new[key]
-
-
-def _without_blocks(mutation: Any) -> dict[str, Any]:
-    """Return a task's table `mutation` without blocks of a brain; that of inherited bodies stays."""
-    if not isinstance(mutation, dict) or not isinstance(blocks := mutation.get("blocks"), dict):
-        return {}
-    own = {name: values for name, values in blocks.items() if name == BODY}
-    return {"mutation": {**mutation, "blocks": own}}
+    return bool(old.get(key, DEFAULTS.get(name)) != new[key])
 
 
 def code_of(table: dict[str, Any], key: str) -> list[str]:
