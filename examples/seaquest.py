@@ -1,8 +1,9 @@
 """MinAtar's Seaquest (Young & Tian 2019) in JAX, perceived through the cells around the submarine.
 
-The rules are those of MinAtar 1.0.15, tick by tick; `tests/test_seaquest.py` compares the
-two. In each group the newest thing has slot 0. A new thing pushes the oldest one out, which has then
-left the screen, since the slots are as many as can be on it at once.
+The rules are those of MinAtar 1.0.15 (a program under the GPL, which is not needed here), tick by tick;
+`tests/test_seaquest.py` compares the two. In each group the newest thing has slot 0, and pushes the
+oldest one out. That one has then left the screen, together with the last bullet that it shot, since there
+are slots enough.
 """
 
 from types import SimpleNamespace
@@ -18,9 +19,11 @@ SIDE, FLOOR = 10, 8
 OXYGEN, ABOARD = 200, 6
 """ticks under water, and divers on board, at most"""
 SPAWN, MOVE = 20, 5
-"""ticks between enemies, and between the moves of an enemy, in the beginning"""
+"""ticks from one enemy to the next, and ticks in which an enemy waits between moves, in the beginning"""
 DIVER_SPAWN, DIVER_MOVE, COOL_DOWN, ENEMY_SHOT = 30, 5, 5, 10
+"""ticks from one diver to the next; waits of divers, of the player's gun, and of an enemy's gun"""
 SHOTS, ENEMIES, DIVERS = 4, 40, 3
+"""slots; at the fastest an enemy comes in each tick and leaves after 30, its last bullet 10 later"""
 LEFT, UP, RIGHT, DOWN, FIRE = range(1, 6)
 SIGHT = 1
 """cells perceived on each side of the submarine"""
@@ -71,7 +74,7 @@ class State(NamedTuple):
     right: Array
     oxygen: Array
     aboard: Array
-    """divers on board; -1 after six were brought up, as in MinAtar"""
+    """divers on board; as in MinAtar -1 when six were brought up at once, and then less each time"""
     surfaced: Array
     reload: Array
     enemy_wait: Array
@@ -134,12 +137,12 @@ def tick(state: State, action: Array, drawn: Draws) -> tuple[State, Array, Array
     state, points = _shots_fly(state)
     state = _divers_move(state)
     state, more, killed = _enemies_move(state)
-    state, delivered, drowned = _breathe(state)
-    return state, points + more + delivered, killed | drowned
+    state, delivered, over = _breathe(state)
+    return state, points + more + delivered, killed | over
 
 
 def _spawned(state: State, drawn: Draws) -> State:
-    """Let an enemy and a diver come in, if they are due and no enemy swims against it in its row."""
+    """Let a diver and an enemy come in, if due; no enemy comes in against another one in its row."""
     due, others = state.enemy_wait == 0, state.enemies
     against = others.there & (others.y == drawn.enemy_row) & (others.right != drawn.enemy_right)
     enemy = Enemies(
@@ -211,13 +214,13 @@ def _shots_fly(state: State) -> tuple[State, Array]:
 
 
 def _hits(
-    state: State, shots: Shots, enemies: Enemies, may: Array, rank: Array, order: Any
+    state: State, shots: Shots, enemies: Enemies, exposed: Array, rank: Array, order: Any
 ) -> tuple[State, Array]:
-    """Let each bullet hit, of the enemies in its cell that it may hit, the one with the highest rank."""
+    """Let each bullet hit, of the exposed enemies in its cell, the one with the highest rank."""
     there, flying, points = enemies.there, shots.there, jnp.int32(0)
     for shot in order:
         in_cell = (enemies.x == shots.x[shot]) & (enemies.y == shots.y[shot])
-        found = in_cell & there & may & flying[shot]
+        found = in_cell & there & exposed & flying[shot]
         there &= ~(found & (rank == jnp.where(found, rank, -1).max()))
         flying = flying.at[shot].set(flying[shot] & ~found.any())
         points += found.any()
@@ -276,10 +279,10 @@ def _enemies_move(state: State) -> tuple[State, Array, Array]:
 
 
 def _breathe(state: State) -> tuple[State, Array, Array]:
-    """Let waits and oxygen go down, or fill the tank at the surface; return points and who drowns."""
-    under, drowned = state.y > 0, state.oxygen <= 0
+    """Shorten waits; use oxygen, or fill the tank at the surface; return points and if it is over."""
+    under, over = state.y > 0, state.oxygen <= 0
     comes_up = ~under & ~state.surfaced
-    drowned |= comes_up & (state.aboard == 0)
+    over |= comes_up & (state.aboard == 0)
     comes_up &= state.aboard != 0
     full = state.aboard == ABOARD
     points = jnp.where(comes_up & full, state.oxygen * 10 // OXYGEN, 0)
@@ -296,7 +299,7 @@ def _breathe(state: State) -> tuple[State, Array, Array]:
         move=state.move - faster,
         ramp=state.ramp + harder,
     )
-    return state, points, drowned
+    return state, points, over
 
 
 def cells(state: State, rows: Array, columns: Array) -> Array:

@@ -5,7 +5,7 @@
 The experiments must have been run (`primordia experiment`). An Atari player plays in four ways: the game
 of its task; games with sticky buttons and no-ops at the start; the game of its task with frozen senses;
 and the games with sticky buttons blindly, with the buttons that it pressed in the game of its task. If
-the task has no-ops, the first way is left out. The games of robots and poles all begin differently.
+the task has all this noise, the first way is left out. Games of robots and poles all begin differently.
 Robots and organisms of gymnax play fresh games in three ways: seeing, with frozen senses, and blindly.
 Pole balancers play fresh games.
 
@@ -74,7 +74,7 @@ def played(name: str, run: Records, group: Group) -> list[dict[str, Any]]:
     """Let organisms play and return a row for each world and way."""
     habitat, rows = str(run.config.habitat["name"]), []
     ways = WAYS[habitat]
-    if run.config.habitat.get("noops"):  # then its own games are such games
+    if NOISE.items() <= run.config.habitat.items():  # its own games are such games
         ways = {way: options for way, options in ways.items() if way != "own game"}
     if group.chosen_from == 1 and habitat not in COMPILED:
         ways = {UNKNOWN[habitat]: ways[UNKNOWN[habitat]]}

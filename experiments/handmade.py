@@ -33,7 +33,7 @@ NOOP, LEFT, RIGHT, SHOOT = range(4)
 UP = 1
 BEYOND, BACK, THREATS, DIVER = 0, 1, slice(4, 7), 7
 GO_LEFT, GO_UP, GO_RIGHT, GO_DOWN, FIRE = range(1, 6)
-LOW, ABOARD = 2, 10
+LOW, SAVED = 2, 10
 """Cells of Seaquest's gauges: empty below 60 ticks of oxygen; full if a diver is on board."""
 RESULTS = Path(__file__).parent / "skill" / "results" / "minatar-handmade"
 
@@ -77,7 +77,7 @@ def dive(senses: jax.Array) -> jax.Array:
     left, right, free_above = threat[:, 1, 0], threat[:, 1, 2], ~threat[:, 0].any(1)
     rules = (  # the first that holds
         (near[:, 0, :, BEYOND].all(1), GO_DOWN),
-        (~gauges[:, LOW] & gauges[:, ABOARD], GO_UP),
+        (~gauges[:, LOW] & gauges[:, SAVED], GO_UP),
         (jnp.where(looks_left, left, right), FIRE),
         (jnp.where(looks_left, right, left) & free_above, GO_UP),
         (jnp.where(looks_left, right, left), GO_DOWN),

@@ -1,5 +1,6 @@
 """The Seaquest of the examples is MinAtar's, tick by tick."""
 
+from pathlib import Path
 from typing import Any
 
 import jax
@@ -8,8 +9,11 @@ import numpy as np
 import pytest
 from examples import seaquest
 from examples.seaquest import ABOARD, SIDE, Draws, State
-from minatar.environments.seaquest import Env  # type: ignore[import-untyped]
 
+from primordia.config import load
+
+Env: Any = pytest.importorskip("minatar.environments.seaquest").Env
+ROOT = Path(__file__).parent.parent
 CHANNELS = {"back": 1, "shot": 2, "trail": 3, "bullet": 4, "fish": 5, "submarine": 6, "diver": 9}
 """MinAtar's numbers of the channels of `cells`"""
 OXYGEN, ON_BOARD = 7, 8
@@ -96,9 +100,30 @@ def test_draws_are_those_of_minatar() -> None:
 
 
 def test_a_player_perceives_the_cells_around_it_and_the_gauges() -> None:
-    """At the surface the row above is beyond the screen; the tank is full, and nobody is on board."""
-    senses = np.asarray(seaquest.senses(seaquest.first()))
+    """It is at the right side of the screen, with a fish above its back, and a diver below it."""
+    state = seaquest.first()
+    fish = state.enemies._replace(there=np.arange(40) == 7, x=np.full(40, 8), y=np.full(40, 2))
+    diver = state.divers._replace(there=np.arange(3) == 2, x=np.full(3, 9), y=np.full(3, 4))
+    state = state._replace(enemies=fish, divers=diver, right=jnp.bool_(True))
+    numbers = {"x": 9, "y": 3, "oxygen": 39, "aboard": 2}
+    state = state._replace(**{name: jnp.int32(number) for name, number in numbers.items()})
+    senses = np.asarray(seaquest.senses(state))
     near, gauges = senses[: 9 * 8].reshape(3, 3, 8), senses[9 * 8 :]
-    assert near[:, :, 0].tolist() == [[True] * 3, [False] * 3, [False] * 3]
-    assert np.argwhere(near[:, :, 1:]).tolist() == [[1, 2, 0]]  # it looks to the left
-    assert gauges.tolist() == [True] * SIDE + [False] * ABOARD
+    beyond = [[row, 2, 0] for row in range(3)]
+    back, fish_above, its_trail, diver_below = [1, 0, 1], [0, 0, 5], [0, 1, 3], [2, 1, 7]
+    assert sorted(np.argwhere(near).tolist()) == sorted(
+        [*beyond, back, fish_above, its_trail, diver_below]
+    )
+    assert gauges.tolist() == [True] + [False] * 9 + [True] * 2 + [False] * 4
+
+
+def test_players_of_the_example_feed_under_water_only() -> None:
+    """One player stays at the surface, and another one dives; the picture shows both gauges."""
+    habitat: Any = load(ROOT / "examples" / "seaquest.toml").build_habitat()
+    bodies = habitat.reset(np.array([[1, 2], [3, 4]], np.uint32))
+    bodies, outcome = jax.jit(habitat.step)(bodies, jnp.array([0, seaquest.DOWN]))
+    assert outcome.food.tolist() == [0, 1]
+    assert not outcome.fatal.any()
+    pixels = seaquest.Seaquest().picture(seaquest.first()._replace(aboard=jnp.int32(1)), None)
+    assert pixels.shape == (400, 400, 3)
+    assert pixels[-1, [0, 330]].tolist() == [[*seaquest.TANK], [*seaquest.DIVER]]

@@ -224,7 +224,8 @@ def plan(name: str) -> config.Config:
 def planned(name: str) -> str:
     """Return the organism-ticks of a world of an experiment whose cells are always full, in millions."""
     settings = plan(name)
-    return f"{(settings.stop.ticks or 0) * settings.cells / 1e6:.2g}"
+    assert settings.stop.ticks is not None
+    return f"{settings.stop.ticks * settings.cells / 1e6:.2g}"
 
 
 def searched(name: str, method: str, way: str, outcome: str = "score") -> str:
