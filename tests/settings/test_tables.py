@@ -5,7 +5,9 @@ from typing import Any
 
 import pytest
 
+from primordia.brains import linear
 from primordia.brains.exchange import changed
+from primordia.brains.layout import Shape
 from primordia.config import load, parsed
 from primordia.errors import InputError
 from primordia.settings.tables import (
@@ -47,24 +49,35 @@ def test_a_table_takes_the_place_of_a_value_and_a_value_that_of_a_table() -> Non
     assert base == {"a": {"b": {"c": 1, "d": 2}}}, "the arguments are unchanged"
 
 
+class Picky(linear.Linear):
+    """A brain for two senses or more, with a setting that may be none."""
+
+    width: int | None = None
+
+    def blocks(self, senses: int, outputs: int) -> dict[str, Shape]:
+        if senses < 2:
+            raise RuntimeError("too few")
+        return super().blocks(senses, outputs)
+
+
 def test_another_brain_keeps_the_settings_for_the_blocks_that_it_has(tmp_path: Path) -> None:
     blocks = {
         name: {"scale": number} for number, name in enumerate(("recurrent", "output", "body"))
     }
     task = {"brain": {"kind": "recurrent"}, "mutation": {"scale": 1, "blocks": blocks}}
-    linear: dict[str, Any] = {"brain": {"kind": "linear"}}
-    other = changed(task, linear | {"mutation": {"blocks": {"output": {"copies": 4}}}})
+    other_kind: dict[str, Any] = {"brain": {"kind": "linear"}}
+    other = changed(task, other_kind | {"mutation": {"blocks": {"output": {"copies": 4}}}})
     own = {"output": {"scale": 1, "copies": 4}, "body": {"scale": 2}}
     assert other["mutation"] == {"scale": 1, "blocks": own}
     same: list[dict[str, Any]] = [{"hidden": 8}, {"kind": "recurrent"}, {"kind": "unknown"}]
     for brain in same:
         assert changed(task, {"brain": brain})["mutation"] == task["mutation"]
-    of_the_default = changed({"mutation": task["mutation"]}, linear)
+    of_the_default = changed({"mutation": task["mutation"]}, other_kind)
     assert of_the_default["mutation"]["blocks"].keys() == {"output", "body"}
     assert len(blocks) == 3, "the arguments are unchanged"
     file = tmp_path / "mine.toml"
     file.write_text('task = "Pong-survival"\n[brain]\nkind = "gated"\n')
-    for mine in (load(file), load("Pong-survival", linear)):
+    for mine in (load(file), load("Pong-survival", other_kind)):
         assert mine.mutation["blocks"] == {}
     for wrong in (
         {"brain": 3},
@@ -74,6 +87,8 @@ def test_another_brain_keeps_the_settings_for_the_blocks_that_it_has(tmp_path: P
     ):
         with pytest.raises(InputError):
             load(file, wrong)
+    mine = load("Pong-survival", {"brain": {"kind": f"{__name__}:Picky", "width": "none"}})
+    assert mine.mutation["blocks"] == {}
     with pytest.raises(InputError, match="this brain has no block 'recurrent'"):
         load(
             "CartPole-survival",

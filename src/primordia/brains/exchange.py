@@ -6,7 +6,7 @@ from primordia.brains.contract import find
 from primordia.brains.layout import BODY
 from primordia.errors import InputError
 from primordia.settings.making import make
-from primordia.settings.tables import merged, names_another
+from primordia.settings.tables import NONE, merged, names_another, replaced
 
 
 def changed(task: dict[str, Any], change: dict[str, Any]) -> dict[str, Any]:
@@ -19,9 +19,15 @@ def changed(task: dict[str, Any], change: dict[str, Any]) -> dict[str, Any]:
     if not blocks or not names_another("brain", task.get("brain", {}), change.get("brain")):
         return values
     try:
-        own = make("brain", values["brain"], find).blocks(senses=1, outputs=1)
+        brain = make("brain", replaced(values["brain"], NONE, None), find)
     except InputError:  # `config.validated` refuses such a brain, in better words
         return values
+    try:
+        own = tuple(brain.blocks(senses=1, outputs=1))
+    except (
+        Exception
+    ):  # code of one's own, which may need other sizes; later checks report its faults
+        own = ()
     kept = {name: each for name, each in blocks.items() if name in (*own, BODY)}
     return merged({**task, "mutation": {**task["mutation"], "blocks": kept}}, change)
 
