@@ -169,3 +169,9 @@ def test_pictures_of_the_readme_are_small() -> None:
     sizes = [picture.stat().st_size for picture in (HERE / "docs" / "pictures").iterdir()]
     assert max(sizes) < 1_000_000
     assert sum(sizes) < 2_000_000
+
+
+def test_every_page_is_in_the_navigation_of_the_site() -> None:
+    site = (HERE / "zensical.toml").read_text(encoding="utf-8")
+    missing = [name(page) for page in PAGES[1:] if f'"{name(page)}"' not in site]
+    assert not missing
