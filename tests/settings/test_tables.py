@@ -87,6 +87,9 @@ def test_another_brain_keeps_the_settings_for_the_blocks_that_it_has(tmp_path: P
     ):
         with pytest.raises(InputError):
             load(file, wrong)
+    file.write_text('task = "Pong-survival"\nbrain = 3\n')
+    with pytest.raises(InputError, match="brain"):
+        load(file, other_kind)
     mine = load("Pong-survival", {"brain": {"kind": f"{__name__}:Picky", "width": "none"}})
     assert mine.mutation["blocks"] == {}
     with pytest.raises(InputError, match="this brain has no block 'recurrent'"):

@@ -24,9 +24,7 @@ def changed(task: dict[str, Any], change: dict[str, Any]) -> dict[str, Any]:
         return values
     try:
         own = tuple(brain.blocks(senses=1, outputs=1))
-    except (
-        Exception
-    ):  # code of one's own, which may need other sizes; later checks report its faults
+    except Exception:  # of one's own code, which may need other sizes; later checks report it
         own = ()
     kept = {name: each for name, each in blocks.items() if name in (*own, BODY)}
     return merged({**task, "mutation": {**task["mutation"], "blocks": kept}}, change)
