@@ -8,7 +8,8 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 from examples import seaquest
-from examples.seaquest import ABOARD, SIDE, Draws, State
+from examples import seaquest_rules as rules
+from examples.seaquest_rules import ABOARD, SIDE, Draws, State
 
 from primordia.config import load
 
@@ -39,7 +40,7 @@ class Dealt:
 @jax.jit
 def ticked(state: State, action: Any, drawn: Draws) -> Any:
     """Return the next state, points, whether the game is over, and what MinAtar would show."""
-    state, points, over = seaquest.tick(state, action, drawn)
+    state, points, over = rules.tick(state, action, drawn)
     every = jnp.arange(SIDE)
     oxygen, divers = seaquest.gauges(state)
     screen = jnp.zeros((SIDE, SIDE, 10), bool).at[state.y, state.x, 0].set(True)
@@ -60,7 +61,7 @@ def drawn_by(chance: np.random.Generator) -> Draws:
 @pytest.mark.parametrize(("ramped", "least", "crowd"), [(False, 10, 3), (True, 80, 20)])
 def test_games_are_those_of_minatar(ramped: bool, least: int, crowd: int) -> None:
     """A player that survives everything plays at random, in an empty sea or in the most crowded one."""
-    chance, game, state = np.random.default_rng(ramped), Env(), seaquest.first()
+    chance, game, state = np.random.default_rng(ramped), Env(), rules.first()
     if ramped:
         game.e_spawn_speed, game.move_speed, game.ramp_index, game.diver_count = 1, 2, 25, ABOARD
         level = {"spawn": 1, "move": 2, "ramp": 25, "aboard": ABOARD}
@@ -87,7 +88,7 @@ def test_games_are_those_of_minatar(ramped: bool, least: int, crowd: int) -> Non
 
 def test_draws_are_those_of_minatar() -> None:
     """Half of the enemies swim to the right, a third are submarines, and rows are equally frequent."""
-    drawn = jax.vmap(seaquest.draws)(jax.random.split(jax.random.key(0), 20_000))
+    drawn = jax.vmap(rules.draws)(jax.random.split(jax.random.key(0), 20_000))
     for flags, share in (
         (drawn.enemy_right, 1 / 2),
         (drawn.enemy_armed, 1 / 3),
@@ -101,7 +102,7 @@ def test_draws_are_those_of_minatar() -> None:
 
 def test_a_player_perceives_the_cells_around_it_and_the_gauges() -> None:
     """It is at the right side of the screen, with a fish above its back, and a diver below it."""
-    state = seaquest.first()
+    state = rules.first()
     fish = state.enemies._replace(there=np.arange(40) == 7, x=np.full(40, 8), y=np.full(40, 2))
     diver = state.divers._replace(there=np.arange(3) == 2, x=np.full(3, 9), y=np.full(3, 4))
     state = state._replace(enemies=fish, divers=diver, right=jnp.bool_(True))
@@ -121,9 +122,9 @@ def test_players_of_the_example_feed_under_water_only() -> None:
     """One player stays at the surface, and another one dives; the picture shows both gauges."""
     habitat: Any = load(ROOT / "examples" / "seaquest.toml").build_habitat()
     bodies = habitat.reset(np.array([[1, 2], [3, 4]], np.uint32))
-    bodies, outcome = jax.jit(habitat.step)(bodies, jnp.array([0, seaquest.DOWN]))
+    bodies, outcome = jax.jit(habitat.step)(bodies, jnp.array([0, rules.DOWN]))
     assert outcome.food.tolist() == [0, 1]
     assert not outcome.fatal.any()
-    pixels = seaquest.Seaquest().picture(seaquest.first()._replace(aboard=jnp.int32(1)), None)
+    pixels = seaquest.Seaquest().picture(rules.first()._replace(aboard=jnp.int32(1)), None)
     assert pixels.shape == (400, 400, 3)
     assert pixels[-1, [0, 330]].tolist() == [[*seaquest.TANK], [*seaquest.DIVER]]
