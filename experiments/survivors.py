@@ -28,6 +28,8 @@ VIEW, HERE = (7, 9, 21), (3, 4)
 """Rows, columns and channels of the map that is perceived, and the player's cell in it."""
 ZOMBIE, COW = 17, 18
 """Channels after those of the kinds of ground."""
+SAPLING = 1328
+"""The sense that says how many saplings a player has."""
 STEPS = np.array([[0, -1], [0, 1], [-1, 0], [1, 0]])
 """Rows and columns of a step to the left, to the right, up and down."""
 FREE = [BlockType.GRASS.value, BlockType.SAND.value, BlockType.PATH.value]
@@ -44,6 +46,8 @@ class Player(NamedTuple):
     """drinks, and eats cows, and goes to water and cows that it sees"""
     sleeps: bool = False
     """sleeps when it is tired, until it wakes"""
+    plants: bool = False
+    """gathers saplings from the grass before it, and plants them there; nothing walks through plants"""
 
 
 def act(player: Player, senses: Array) -> Array:
@@ -61,6 +65,10 @@ def button(player: Player, senses: Array) -> Array:
     turned = (jnp.arange(4) - facing) % 4
     step = jnp.argmin(turned + 4 * ~free)
     chosen = Action.LEFT.value + step
+    if player.plants:
+        with_sapling = senses[SAPLING] > 0
+        sown = jnp.where(with_sapling, Action.PLACE_PLANT.value, Action.DO.value)
+        chosen = jnp.where(beside[facing, BlockType.GRASS.value], sown, chosen)
     if player.feeds:
         for channel, short in ((COW, food < HUNGRY), (BlockType.WATER.value, drink < THIRSTY)):
             aim, seen = nearest(view[..., channel])
@@ -92,6 +100,9 @@ PLAYERS = {
     "walks, fights": Player(fights=True),
     "walks, fights, drinks and eats": Player(fights=True, feeds=True),
     "walks, fights, drinks, eats and sleeps": Player(fights=True, feeds=True, sleeps=True),
+    "walks, fights, plants": Player(fights=True, plants=True),
+    "walks, fights, drinks, eats, plants": Player(fights=True, feeds=True, plants=True),
+    "walks, fights, drinks, eats, sleeps, plants": Player(True, True, True, True),
 }
 
 
