@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from PIL import Image, ImageColor
+from PIL import Image, ImageChops, ImageColor
 
 from primordia import files
 from primordia.errors import InputError
@@ -274,6 +274,21 @@ def test_a_caption_shows_the_energy_and_in_the_last_tick_the_cause_of_death(
         "organism 4   age 29   energy 0.2",
         f"organism 4   age 30   energy -1.0{ends}",
     ]
+
+
+@pytest.mark.parametrize(
+    ("left", "line"), [("age 1", 12), ("organism 100551   age 135   energy", 32)]
+)
+def test_a_tick_that_does_not_fit_beside_other_words_is_in_the_second_line(
+    left: str, line: int
+) -> None:
+    empty, words = Image.new("RGB", (320, 60), PAPER), "tick 92,259"
+    alone = replay._captioned(empty.copy(), left, "", "").crop((220, 0, 320, 60))
+    shown = replay._captioned(empty.copy(), left, words, "").crop((220, 0, 320, 60))
+    box = ImageChops.difference(alone, shown).getbbox()
+    assert box
+    _, top, _, bottom = box
+    assert line <= top < bottom <= line + 20
 
 
 def test_a_card_shows_the_number_of_ticks_that_are_left_out(

@@ -252,11 +252,15 @@ def picture_of(life: RelivedLife, stretch: Stretch, i: int, run: str = "") -> Im
 
 
 def _captioned(picture: Image.Image, left: str, right: str, below: str) -> Image.Image:
-    """Write words into a picture: in its upper corners, and below those on the left."""
+    """Write words into a picture: in its upper corners, and below those on the left.
+
+    What does not fit beside the words on the left goes into the second line.
+    """
     pen, letters = ImageDraw.Draw(picture), font(SIZE)
+    fits = pen.textlength(f"{left}  {right}", letters) <= picture.width - 28
     pen.text((14, 12), left, INK, letters)
     pen.text((14, 32), below, INK, letters)
-    pen.text((picture.width - 14, 12), right, INK, letters, anchor="ra")
+    pen.text((picture.width - 14, 12 if fits else 32), right, INK, letters, anchor="ra")
     return picture
 
 
