@@ -254,13 +254,17 @@ def picture_of(life: RelivedLife, stretch: Stretch, i: int, run: str = "") -> Im
 def _captioned(picture: Image.Image, left: str, right: str, below: str) -> Image.Image:
     """Write words into a picture: in its upper corners, and below those on the left.
 
-    What does not fit beside the words on the left goes into the second line.
+    The words on the right go into the second line if only this has room for them.
     """
     pen, letters = ImageDraw.Draw(picture), font(SIZE)
-    fits = pen.textlength(f"{left}  {right}", letters) <= picture.width - 28
+    room = [
+        pen.textlength(f"{each}  {right}", letters) <= picture.width - 28 for each in (left, below)
+    ]
     pen.text((14, 12), left, INK, letters)
     pen.text((14, 32), below, INK, letters)
-    pen.text((picture.width - 14, 12 if fits else 32), right, INK, letters, anchor="ra")
+    pen.text(
+        (picture.width - 14, 32 if room == [False, True] else 12), right, INK, letters, anchor="ra"
+    )
     return picture
 
 
