@@ -102,7 +102,9 @@ PLAYERS = {
     "walks, fights, drinks, eats and sleeps": Player(fights=True, feeds=True, sleeps=True),
     "walks, fights, plants": Player(fights=True, plants=True),
     "walks, fights, drinks, eats, plants": Player(fights=True, feeds=True, plants=True),
-    "walks, fights, drinks, eats, sleeps, plants": Player(True, True, True, True),
+    "walks, fights, drinks, eats, sleeps, plants": Player(
+        fights=True, feeds=True, sleeps=True, plants=True
+    ),
 }
 
 

@@ -8,13 +8,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from PIL import Image, ImageChops, ImageColor
+from PIL import Image, ImageColor
 
 from primordia import files
 from primordia.errors import InputError
 from primordia.habitats.framed import PAPER
-from primordia.law.metabolism import ONE
-from primordia.law.world import Cause
 from primordia.organism import video
 from primordia.organism.reliving import replay
 from primordia.organism.reliving.relived import RelivedLife
@@ -217,78 +215,6 @@ def test_a_film_that_leaves_out_ticks_still_shows_the_tick_of_death(
         for number, part in enumerate(parts)
         for at in sorted({*part[::step], *({age} & {*part})})
     ]
-
-
-def test_a_caption_counts_the_age_from_the_birth_wherever_the_film_begins(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """The film begins with the birth, or later with a fork or a checkpoint."""
-    written: list[tuple[str, ...]] = []
-    monkeypatch.setattr(replay, "_captioned", lambda picture, *words: written.append(words))
-    habitat = SimpleNamespace(picture=lambda *given: None, caption=lambda *given: "push")
-    ticks = np.array([1301, 2570])
-    stretch: Any = SimpleNamespace(tick=ticks, bodies=ticks, action=ticks, energy=ticks)
-    for begins, island in ((70, ""), (1300, "dune")):
-        life: Any = SimpleNamespace(
-            record=SimpleNamespace(id=[4], born=[70]),
-            island=island,
-            begins=begins,
-            ends=9000,
-            habitat=habitat,
-            law=SimpleNamespace(metabolism=None),
-        )
-        for i in range(len(ticks)):
-            replay.picture_of(life, stretch, i)
-    assert written == [
-        (f"organism 4   {island}{age}", tick, "push")
-        for island in ("", "on dune   ")
-        for age, tick in (("age 1,231", "tick 1,301"), ("age 2,500", "tick 2,570"))
-    ]
-
-
-@pytest.mark.parametrize("cause", [Cause.STARVED, None])
-def test_a_caption_shows_the_energy_and_in_the_last_tick_the_cause_of_death(
-    monkeypatch: pytest.MonkeyPatch, cause: Cause | None
-) -> None:
-    written: list[tuple[str, ...]] = []
-    monkeypatch.setattr(replay, "_captioned", lambda picture, *words: written.append(words))
-    life: Any = SimpleNamespace(
-        record=SimpleNamespace(id=[4], born=[70]),
-        island="",
-        begins=70,
-        ends=100,
-        cause=cause,
-        habitat=SimpleNamespace(picture=lambda *given: None, caption=lambda *given: ""),
-        law=SimpleNamespace(metabolism="a metabolism"),
-    )
-    ticks = np.array([98, 99, 100])
-    energy = np.array([1234 * ONE + ONE // 2, ONE // 4, -ONE])
-    stretch: Any = SimpleNamespace(
-        tick=ticks, bodies=ticks, action=ticks, energy=energy, eaten=0 * energy
-    )
-    for i in range(len(ticks)):
-        replay.picture_of(life, stretch, i)
-    ends = "" if cause is None else "   dies (starved)"
-    assert [left for left, _, _ in written] == [
-        "organism 4   age 28   energy 1,234.5",
-        "organism 4   age 29   energy 0.2",
-        f"organism 4   age 30   energy -1.0{ends}",
-    ]
-
-
-@pytest.mark.parametrize(
-    ("left", "line"), [("age 1", 12), ("organism 100551   age 135   energy", 32)]
-)
-def test_a_tick_that_does_not_fit_beside_other_words_is_in_the_second_line(
-    left: str, line: int
-) -> None:
-    empty, words = Image.new("RGB", (320, 60), PAPER), "tick 92,259"
-    alone = replay._captioned(empty.copy(), left, "", "").crop((220, 0, 320, 60))
-    shown = replay._captioned(empty.copy(), left, words, "").crop((220, 0, 320, 60))
-    box = ImageChops.difference(alone, shown).getbbox()
-    assert box
-    _, top, _, bottom = box
-    assert line <= top < bottom <= line + 20
 
 
 def test_a_card_shows_the_number_of_ticks_that_are_left_out(

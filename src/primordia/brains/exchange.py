@@ -24,7 +24,7 @@ def changed(task: dict[str, Any], change: dict[str, Any]) -> dict[str, Any]:
         return values
     try:
         own = tuple(brain.blocks(senses=1, outputs=1))
-    except Exception:  # of one's own code, which may need other sizes; later checks report it
+    except Exception:  # the user's own brain may refuse these sizes; a later check reports it
         own = ()
     kept = {name: each for name, each in blocks.items() if name in (*own, BODY)}
     return merged({**task, "mutation": {**task["mutation"], "blocks": kept}}, change)
