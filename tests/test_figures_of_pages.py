@@ -40,9 +40,7 @@ KNOWN = {
     "1.7": "0.3 times the root of 32, a spectral radius",
     "0.004": "a mutation's scale over that of founders, both set by tasks",
     "8,000": "the length at which games of the first seeds were cut, and lives of tanks in words",
-    **dict.fromkeys(
-        ("1,800", "3,589", "12,139", "787"), "reinforcement learning with robots, in tasks.md"
-    ),
+    **dict.fromkeys(("1,800", "12,139", "787"), "reinforcement learning with robots, in tasks.md"),
     "2,500": "the ticks of a game of Freeway in MinAtar",
     **dict.fromkeys(
         ("2,360", "15,820", "16,411", "17,367", "26,300", "37,800", "62,010", "98,235"),
