@@ -38,12 +38,12 @@ KNOWN = {
     "8,192": "the ticks of a game of Freeway",
     "3,000": "the length of games from any start, in starts.py",
     "1.7": "0.3 times the root of 32, a spectral radius",
-    "0.004": "a mutation's scale over that of founders, both set by tasks",
     "8,000": "the length at which games of the first seeds were cut, and lives of tanks in words",
     **dict.fromkeys(("1,800", "12,139", "787"), "reinforcement learning with robots, in tasks.md"),
     "2,500": "the ticks of a game of Freeway in MinAtar",
+    "198": "the weights of a tank with ten senses and 18 buttons",
     **dict.fromkeys(
-        ("2,360", "15,820", "16,411", "17,367", "26,300", "37,800", "62,010", "98,235"),
+        ("2,360", "15,820", "16,411", "16,600", "17,367", "26,300", "37,800", "62,010", "98,235"),
         "papers that the table of BattleZone names",
     ),
 }
