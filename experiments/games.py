@@ -13,11 +13,12 @@ The longest-lived of many may be as good by luck as by descent. So all organisms
 end play one unknown game each, in gymnax in each of the three ways. As many founders as each world of
 the reference had births, at most MOST, live one life; the longest-lived of them plays as champions do.
 Founders as they come play as all that are alive do. The table goes to `results/` beside the file, as
-Markdown and CSV.
+Markdown and CSV, and grows with each group.
 """
 
 import csv
 import io
+from collections.abc import Iterator
 from pathlib import Path
 from statistics import fmean
 from typing import Any
@@ -60,14 +61,20 @@ UNKNOWN = dict.fromkeys(WAYS, "fresh starts") | {"atari": "sticky, no-ops"}
 
 def report(file: Path) -> None:
     """Let the organisms of an experiment play and write the table."""
-    rows = []
+    rows, stem = [], file.parent / "results" / f"{file.stem}-games"
     for number, folder in enumerate(named.arms(file)):
         run = primordia.load(folder).opened()
-        for group in evolved(run):
-            rows += played(f"{folder.name}: {group.name}", run, group)
-        for group in unevolved(run, MOST) if number == 0 else ():
-            rows += played(group.name, run, group)
-        write_rows(file.parent / "results" / f"{file.stem}-games", rows, summary(rows))
+        for name, group in players_of(run, folder.name, also_founders=number == 0):
+            rows += played(name, run, group)
+            write_rows(stem, rows, summary(rows))
+
+
+def players_of(run: Records, arm: str, *, also_founders: bool) -> Iterator[tuple[str, Group]]:
+    """Yield an arm's organisms, then founders, with their names. The founders are chosen only then."""
+    for group in evolved(run):
+        yield f"{arm}: {group.name}", group
+    for group in unevolved(run, MOST) if also_founders else ():
+        yield group.name, group
 
 
 def played(name: str, run: Records, group: Group) -> list[dict[str, Any]]:

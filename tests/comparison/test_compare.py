@@ -10,6 +10,7 @@ import pytest
 import primordia
 from primordia.comparison.comparison import Comparison
 from primordia.comparison.measured import Measured
+from primordia.experiments import results
 from primordia.figures import style
 from primordia.figures.comparison import draw
 from primordia.runs import loop
@@ -93,6 +94,17 @@ def test_the_command_shows_tables_and_draws_a_figure(runs: list[Path], tmp_path:
     for name in ("compare.png", "compare.svg"):
         assert (tmp_path / "new" / name).stat().st_size > 10_000
         assert str(tmp_path / "new" / name) in done.stdout
+
+
+def test_one_arm_has_results_without_effects(runs: list[Path], tmp_path: Path) -> None:
+    arm = primordia.load(runs[0]).opened()
+    page, sheet, picture = results.write(tmp_path / "results", "Is it long?", [arm])
+    title, summary, note, made = page.read_text().split("\n\n")
+    assert (title, note) == ("# Is it long?", " ".join(results.NOTES))
+    assert summary.splitlines()[2].startswith(f"| one | {WORLDS} |")
+    assert made.startswith("Run on ")
+    assert len(sheet.read_text().splitlines()) == 1 + WORLDS
+    assert picture.stat().st_size > 10_000
 
 
 def test_runs_that_cannot_be_compared_are_refused(runs: list[Path], tmp_path: Path) -> None:

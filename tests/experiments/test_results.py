@@ -181,7 +181,7 @@ def test_the_parts_of_the_page_are_in_order_and_have_each_arm(
     assert paths == [tmp_path / f"results.{suffix}" for suffix in ("md", "csv", "png")]
     title, summary, *others, effects, note, made = paths[0].read_text().split("\n\n")
     assert (title, made) == ("# Is it?", "made ['one', 'three'] ['a', 'b']\n")
-    assert note.startswith(results.NOTE)
+    assert note.startswith(" ".join([*results.NOTES, results.OF_EFFECTS]))
     assert [row[4] for row in rows_of(summary)[1:]] == ["1", "2"]
     assert [rows_of(other)[1:] for other in others] == (
         [] if saturate else [[["one", "1"], ["three", "2"]]]

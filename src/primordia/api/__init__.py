@@ -144,6 +144,11 @@ def compare(
     `figures.comparison.save` draws the result.
     """
     arms = [arm for each in runs for arm in _arms(each)]
+    if len(arms) < 2:
+        raise InputError(
+            "compare needs two or more runs, or an experiment of two or more arms; the first is the"
+            " reference of the others"
+        )
     return comparison.compare(arms, births, ticks, island)
 
 

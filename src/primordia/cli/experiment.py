@@ -127,11 +127,7 @@ def _live_all(
         _end_unless_done(chosen, result)
     if chosen.left():
         return report(f"{counted(len(chosen.left()), 'job')} of other arms left to do")
-    if not (written := chosen.gather()):
-        return report(
-            f"one arm has nothing to be compared with; see `primordia info {chosen.path}`"
-        )
-    for path in written:
+    for path in chosen.gather():
         click.echo(path)
 
 

@@ -162,16 +162,16 @@ def compare(
     """Compare runs, read from their records.
 
     Args:
-        runs: the first is the reference.
+        runs: the first is the reference of the others, if there are any.
         births: horizon: a world counts as saturated only if it saturates before this number of
             births, counted from the latest fork.
         ticks: the same horizon in ticks.
         island: name of an island; only organisms that were born on it count.
 
     Raises:
-        InputError: there are fewer than two runs, one run is given twice, the tasks differ, nothing
-            has lived in a run, or a world stopped before a horizon and before it saturated; or a run
-            has no such island, nothing was born on it in a world, or a horizon is given with it.
+        InputError: one run is given twice, the tasks differ, nothing has lived in a run, or a world
+            stopped before a horizon and before it saturated; or a run has no such island, nothing was
+            born on it in a world, or a horizon is given with it.
     """
     configs = _configs(runs)
     if island is not None and (births, ticks) != (None, None):
@@ -272,11 +272,6 @@ def _known_everywhere(values: ArrayLike) -> Measured:
 
 def _configs(runs: Sequence[Records]) -> list[Config]:
     """Return the settings of runs; raise InputError if the runs cannot be compared."""
-    if len(runs) < 2:
-        raise InputError(
-            "compare needs two or more runs, or an experiment of two or more arms; the first is the"
-            " reference of the others"
-        )
     named = [str(run.path) for run in runs]
     paths = [path.resolve() for run in runs for path in run.paths]
     if len(set(paths)) < len(paths):

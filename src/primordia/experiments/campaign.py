@@ -92,9 +92,7 @@ class Campaign:
         return [opened([folder]) for folder in self.arms.values()]
 
     def gather(self) -> list[Path]:
-        """Write the results of all arms, unless there is only one arm. Return the files."""
-        if len(self.plan.arms) < 2:
-            return []
+        """Write the results of all arms. Return the files."""
         from primordia.experiments import results  # Matplotlib takes a second to load
 
         return results.write(self.path / RESULTS, self.plan.question, self.opened())

@@ -27,11 +27,11 @@ from primordia.runs.arrays import NEVER
 from primordia.runs.directory import VERSIONS
 from primordia.runs.records import Records
 
-NOTE = (
-    "Medians over worlds (quartiles); a world that stopped unsaturated is treated as censored."
-    " Effects: Cliff's delta; ratio of medians (95 % interval over worlds). Crashes: extinctions"
-    " after half of the cells were full of founders' descendants."
+NOTES = (
+    "Medians over worlds (quartiles); a world that stopped unsaturated is treated as censored.",
+    "Crashes: extinctions after half of the cells were full of founders' descendants.",
 )
+OF_EFFECTS = "Effects: Cliff's delta; ratio of medians (95 % interval over worlds)."
 
 COLUMNS = {
     "first": "first_long_birth",
@@ -44,21 +44,23 @@ COLUMNS = {
 
 
 def write(stem: Path, question: str, arms: Sequence[Records]) -> list[Path]:
-    """Write STEM.md, STEM.csv and STEM.png; the first arm is the reference.
+    """Write STEM.md, STEM.csv and STEM.png; the first arm is the reference of the others, if any.
 
     Raises:
         InputError: nothing has lived in an arm yet, or the arms cannot be compared.
         Trouble: a file cannot be written.
     """
     compared, counted = compare(arms), [counts(arm) for arm in arms]
-    note = " ".join([NOTE, *evidence_notes(compared)])
-    parts = [f"# {question}", summary(compared, counted), table(*effects(compared)), note]
+    parts, notes = [f"# {question}", summary(compared, counted)], list(NOTES)
     ends = [late.last_deaths(arm, compared) for arm in arms] if "pace" in compared.outcomes else []
     if ends:
-        parts.insert(2, dying(compared, ends))
-    text = "\n\n".join([*parts, made([each.name for each in compared.arms], arms)])
+        parts.append(dying(compared, ends))
+    if len(arms) > 1:
+        parts.append(table(*effects(compared)))
+        notes += [OF_EFFECTS, *evidence_notes(compared)]
+    parts += [" ".join(notes), made([each.name for each in compared.arms], arms)]
     paths = [stem.with_name(f"{stem.name}.{suffix}") for suffix in ("md", "csv", "png")]
-    files.write_text(paths[0], text + "\n")
+    files.write_text(paths[0], "\n\n".join(parts) + "\n")
     files.write_text(paths[1], world_rows(compared, counted, ends))
     with style.applied():
         figure = draw(compared)
