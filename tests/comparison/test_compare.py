@@ -99,7 +99,7 @@ def test_the_command_shows_tables_and_draws_a_figure(runs: list[Path], tmp_path:
 def test_one_arm_has_results_without_effects(runs: list[Path], tmp_path: Path) -> None:
     arm = primordia.load(runs[0]).opened()
     page, sheet, picture = results.write(tmp_path / "results", "Is it long?", [arm])
-    title, summary, note, made = page.read_text().split("\n\n")
+    title, _, summary, note, made = page.read_text().split("\n\n")
     assert (title, note) == ("# Is it long?", " ".join(results.NOTES))
     assert summary.splitlines()[2].startswith(f"| one | {WORLDS} |")
     assert made.startswith("Run on ")

@@ -179,7 +179,8 @@ def test_the_parts_of_the_page_are_in_order_and_have_each_arm(
     records: Any = ["a", "b"]
     paths = results.write(tmp_path / "results", "Is it?", records)
     assert paths == [tmp_path / f"results.{suffix}" for suffix in ("md", "csv", "png")]
-    title, summary, *others, effects, note, made = paths[0].read_text().split("\n\n")
+    title, picture, summary, *others, effects, note, made = paths[0].read_text().split("\n\n")
+    assert picture == "![The arms side by side](results.png)"
     assert (title, made) == ("# Is it?", "made ['one', 'three'] ['a', 'b']\n")
     assert note.startswith(" ".join([*results.NOTES, results.OF_EFFECTS]))
     assert [row[4] for row in rows_of(summary)[1:]] == ["1", "2"]

@@ -51,7 +51,9 @@ def write(stem: Path, question: str, arms: Sequence[Records]) -> list[Path]:
         Trouble: a file cannot be written.
     """
     compared, counted = compare(arms), [counts(arm) for arm in arms]
-    parts, notes = [f"# {question}", summary(compared, counted)], list(NOTES)
+    paths = [stem.with_name(f"{stem.name}.{suffix}") for suffix in ("md", "csv", "png")]
+    picture = f"![The arms side by side]({paths[2].name})"
+    parts, notes = [f"# {question}", picture, summary(compared, counted)], list(NOTES)
     ends = [late.last_deaths(arm, compared) for arm in arms] if "pace" in compared.outcomes else []
     if ends:
         parts.append(dying(compared, ends))
@@ -59,7 +61,6 @@ def write(stem: Path, question: str, arms: Sequence[Records]) -> list[Path]:
         parts.append(table(*effects(compared)))
         notes += [OF_EFFECTS, *evidence_notes(compared)]
     parts += [" ".join(notes), made([each.name for each in compared.arms], arms)]
-    paths = [stem.with_name(f"{stem.name}.{suffix}") for suffix in ("md", "csv", "png")]
     files.write_text(paths[0], "\n\n".join(parts) + "\n")
     files.write_text(paths[1], world_rows(compared, counted, ends))
     with style.applied():
