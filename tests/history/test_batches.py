@@ -44,7 +44,7 @@ def a_run(mates: np.ndarray | None = None) -> Any:
         schema=SimpleNamespace(mates=mates is not None),
         config=SimpleNamespace(fork=None),
         layout=SimpleNamespace(length=4, names=("all",)),
-        heredity=SimpleNamespace(mutation=SimpleNamespace(moments=None, notes_from="parent")),
+        heredity="the run's",
         world_seeds=SEEDS,
         origin=None,
         notes_of=lambda some: of(10 * LIVES.id[:, None], some),
@@ -67,32 +67,30 @@ def test_each_birth_of_a_pedigree_has_its_own_parents_and_notes(
 ) -> None:
     """A genome is the number of the newborn, of its parent and of its mate, and its note.
 
-    The number of a missing parent is 0, and that of a missing mate is -1. A redrawn note is one more
-    than that of the parent.
+    The number of a missing parent is 0, and that of a missing mate is -1.
     """
     births: list[int] = []
 
     def repeat(counts: tuple, marks: tuple, climate: dict, of: tuple, notes: np.ndarray) -> Any:
-        (seed, number, tick), (cell, founder) = counts, marks
+        (seed, number, tick), (cell, _) = counts, marks
         number = to_host(number).astype(int)
         assert len(number) in {1, at_once}
         assert number.tolist() == to_host(tick).tolist() == cell.tolist()
         world = climate["any"] // 100
         assert (climate["any"] % 100).tolist() == number.tolist()
-        assert redrawn or (to_host(seed) == SEEDS[world]).all()
+        assert (to_host(seed) == SEEDS[world]).all()
         births.extend(set((100 * world + number).tolist()))
-        own = np.where(founder[:, None], 0, notes + 1) if redrawn else notes
-        genome = [number, of[0][:, 0], np.where(of[2], of[1][:, 0], -1), own[:, 0]]
-        return np.stack(genome, axis=1).astype(np.float32), own
+        genome = [number, of[0][:, 0], np.where(of[2], of[1][:, 0], -1), notes[:, 0]]
+        return np.stack(genome, axis=1).astype(np.float32)
 
-    monkeypatch.setattr(pedigree, "shared", lambda *_: repeat)
-    depth: list[int] = []
-    for row in range(len(LIVES)):
-        parent = LIVES.parent_row[row]
-        depth.append(0 if parent < 0 else depth[parent] + 1)
+    def shared(function: Any, *fixed: Any) -> Any:
+        assert (function, *fixed) == (pedigree._repeat, "the run's", redrawn)
+        return repeat
+
+    monkeypatch.setattr(pedigree, "shared", shared)
     rows = np.array([22, 12, 4, 0, 8, 12, 11, 20])
     expected = [
-        [LIVES.id[row], max(LIVES.parent[row], 0), MATES[row], depth[row] if redrawn else note]
+        [LIVES.id[row], max(LIVES.parent[row], 0), MATES[row], note]
         for row, note in zip(rows, 10 * LIVES.id[rows], strict=True)
     ]
     assert genomes(a_run(MATES), rows, redrawn).tolist() == expected

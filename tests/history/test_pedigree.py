@@ -7,6 +7,7 @@ import pytest
 
 import primordia
 from primordia.history.pedigree import genomes
+from primordia.law.world import BirthCause
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from tests.history.larders import FED
@@ -49,6 +50,16 @@ def test_a_redrawn_genome_is_another_one_and_always_the_same(noted: Path) -> Non
     some = rows[5::17]
     assert genomes(run, some, redrawn=True).tobytes() == redrawn[some].tobytes()
     assert redrawn.std() == pytest.approx(recorded.std(), rel=0.5)
+
+
+def test_the_same_births_mutate_if_a_pedigree_is_drawn_again(noted: Path) -> None:
+    run = Archive(noted)
+    lives, redrawn = run.lives, genomes(run, np.arange(len(run.lives)), redrawn=True)
+    children = np.flatnonzero(lives.parent_row >= 0)
+    same = (redrawn[children] == redrawn[lives.parent_row[children]]).all(axis=1)
+    copied = lives.birth_cause[children] == BirthCause.COPY
+    assert (same == copied).all()
+    assert 10 < copied.sum() < len(children) - 10
 
 
 def test_organisms_that_were_alive_at_a_fork_keep_their_genomes(forked: Path) -> None:

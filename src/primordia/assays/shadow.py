@@ -1,10 +1,10 @@
 """The neutral shadow: lifespans of the same pedigree without selection.
 
 A sample of organisms is born again, each alone and with fresh random keys that no run has used.
-Their shadows are born with the same keys. A shadow has the pedigree of its original, but its
-founder and mutations are drawn again. It has as many generations and mutations as its original, but
-no genome in its line was selected. If the originals live longer than the shadows, the difference is
-due to selection (Bedau & Packard 1992).
+Their shadows are born with the same keys. A shadow has the pedigree of its original, and the same
+births mutate, by the same sizes. But its founder and the noise of its mutations are drawn again. So it
+has as many generations and mutations as its original, but no genome in its line was selected. If the
+originals live longer than the shadows, the difference is due to selection (Bedau & Packard 1992).
 """
 
 from dataclasses import dataclass

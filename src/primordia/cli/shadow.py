@@ -44,9 +44,9 @@ def shadow(
 ) -> None:
     """Let organisms live again, and compare each with a shadow, whose line was never selected.
 
-    The shadows have the same pedigree, with new random founders and mutations. An organism and its
-    shadow each live alone, with the same new random keys. Several runs are measured as one arm. Each arm
-    of an experiment is measured.
+    The shadows have the same pedigree, and the same births mutate. Founders and what mutations change
+    are drawn again. An organism and its shadow each live alone, with the same new random keys. Several
+    runs are measured as one arm. Each arm of an experiment is measured.
     """
     found = [arm.shadow(organisms, ticks, island) for arm in arms_of(runs, trust)]
     if as_json:

@@ -21,7 +21,6 @@ from primordia.history.births import genome_in, recorded
 from primordia.history.climate import PastClimate
 from primordia.law.heredity import Heredity
 from primordia.law.world import BirthCause, Climate
-from primordia.mutations.contract import Mutation
 from primordia.progress import steps
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
@@ -38,9 +37,9 @@ def genomes(run: Records, rows: np.ndarray, redrawn: bool = False) -> np.ndarray
     Args:
         run: the organisms' run.
         rows: the organisms' rows in the run's lives, int64 (K,).
-        redrawn: draw founders and mutations again, with keys that no run uses. Organisms that were
-            alive at a fork keep their genomes. Notes that depend on lives or on cells stay as
-            recorded.
+        redrawn: draw the genomes of founders, the noise of mutations and recombination again, with
+            keys that no run uses. The same births mutate, and their notes stay as recorded, such as
+            the sizes of mutations. Organisms that were alive at a fork keep their genomes.
     """
     device.prepare()
     past, worlds = PastClimate(run), run.lives.world[rows]
@@ -63,13 +62,11 @@ class _Pedigree:
         self._births = births = lives.take(self._members)
         self._notes = run.notes_of(births)
         self._climate = past.of_lives(births, births.born)
-        seed = wide(run.world_seeds[births.world[:1]])  # of one shape, which is compiled once
-        seed = stream(seed, Purpose.SHADOW, wide(0)) if redrawn else seed
-        seeds = jax.tree.map(lambda word: np.repeat(np.asarray(word), len(births)), seed)
-        # JAX takes entries ten times as slowly as NumPy.
-        self._counts = jax.device_get((seeds, wide(births.id), wide(births.born)))
-        self._redraws_notes = redrawn and _inherits_notes(run.heredity.mutation)
-        self._repeat = shared(_repeat, run.heredity, self._redraws_notes)
+        numbers = (wide(each) for each in (run.world_seeds[births.world], births.id, births.born))
+        self._counts = jax.device_get(
+            tuple(numbers)
+        )  # NumPy takes entries ten times as fast as JAX
+        self._repeat = shared(_repeat, run.heredity, redrawn)
 
     def genomes(self, rows: np.ndarray) -> np.ndarray:
         """Return the genomes of some of the organisms, (K, P)."""
@@ -98,18 +95,17 @@ class _Pedigree:
         return generation
 
     def _make(self, made: "_Made", places: np.ndarray) -> None:
-        """Repeat births, and put the genomes and notes of the newborn into their places."""
+        """Repeat births, and put the genomes of the newborn into their places."""
         fill = np.resize(places, AT_ONCE if len(places) > FEW else FEW)
         births, parents, mates = self._births, self._parents[fill], self._mates[fill]
-        genome, own = self._repeat(
+        genome = self._repeat(
             tuple(each.take(fill) for each in self._counts),
             (births.cell[fill], births.birth_cause[fill] == BirthCause.FOUNDER),
             {name: values[fill] for name, values in self._climate.items()},
             (made.take(parents), made.take(mates), mates >= 0),
-            self._notes[np.maximum(parents, 0) if self._redraws_notes else fill],
+            self._notes[fill],
         )
         made.put(places, np.asarray(genome)[: len(places)])
-        self._notes[places] = np.asarray(own)[: len(places)]
         made.release(self._parents[places])
         made.release(self._mates[places])
 
@@ -155,35 +151,32 @@ def _mate_rows(run: Records) -> np.ndarray:
     return rows
 
 
-def _inherits_notes(mutation: Mutation) -> bool:
-    """Return whether notes depend only on parents' notes and chance, so that they can be drawn again."""
-    return mutation.moments is None and mutation.notes_from == "parent"
-
-
 def _repeat(
     heredity: Heredity,
-    redraws_notes: bool,
+    redrawn: bool,
     counts: tuple,
     marks: tuple,
     climate: Climate,
     of: tuple[Array, Array, Array],
     notes: Array,
-) -> tuple[Array, Array]:
-    """Repeat K births. Return genomes, float32 (K, P), and notes, int32 (K, n), of the newborn.
+) -> Array:
+    """Repeat K births. Return genomes, float32 (K, P), of the newborn.
 
     Args:
         heredity: the heredity of the run.
-        redraws_notes: whether `notes` are the parents' notes, from which the newborn's notes are
-            drawn.
+        redrawn: whether chance is drawn again; see `genomes`.
         counts: seed of the world, birth number and tick of each birth, Wide.
         marks: cell within the world; whether the newborn is a founder.
         climate: values of the settings at each birth.
         of: genomes of parents and mates, float32 (K, P) each; which newborn have a mate, bool (K,).
-        notes: notes of the newborn as recorded, or of their parents, int32 (K, n).
+        notes: notes of the newborn, int32 (K, n).
     """
     birth = recorded(heredity, counts, marks, climate)
-    parents = heredity.recombined(birth, *of)
-    if not redraws_notes:
-        return heredity.rebuild_genomes(birth, parents, notes), notes
-    newborn = heredity.make_newborn(birth, parents, notes, None)
-    return newborn.genome, newborn.notes
+    if redrawn:
+        seed, *others = counts
+        unused = stream(seed, Purpose.SHADOW, wide(0))
+        again = recorded(heredity, (unused, *others), marks, climate)
+        streams, whether = again.draws.streams, birth.draws.streams[Purpose.MUTATE]
+        streams = streams.replaced(whether, Purpose.MUTATE)
+        birth = again._replace(draws=again.draws._replace(streams=streams))
+    return heredity.rebuild_genomes(birth, heredity.recombined(birth, *of), notes)

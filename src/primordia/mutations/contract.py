@@ -29,7 +29,8 @@ KNOWN = {
 }
 
 PURPOSES = Purpose.MUTATE, Purpose.NOISE, Purpose.FOUNDER
-"""The purposes for which a mutation may draw random bits."""
+"""The purposes for which a mutation may draw random bits: which births mutate, what a mutation
+changes, and founders. A neutral shadow draws all but the first again."""
 
 
 class Draws(NamedTuple):
