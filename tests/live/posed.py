@@ -68,6 +68,7 @@ def law(
         placement=placement,
         islands=islands or Islands(("",), (0, cells)),
         saturation_ticks=saturation_ticks,
+        interoception=False,
         perceived=lambda senses, energy: senses,
     )
 

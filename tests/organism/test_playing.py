@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
@@ -9,6 +10,7 @@ from primordia.habitats.contract import JaxHabitat
 from primordia.habitats.on_host import OnHost
 from primordia.law.genesis import body_words
 from primordia.law.metabolism import ONE
+from primordia.organism.mind import perceiver
 from primordia.organism.playing import games, in_jax
 from primordia.organism.playing.games import Games, Players, lifespans_in_games, play, stretches
 from primordia.organism.playing.players import players_of
@@ -16,6 +18,7 @@ from primordia.organism.playing.seats import ODD, Frozen, Manner, Seats, begun, 
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
 from primordia.runs.archive import Archive
+from tests.worlds import MEADOW, config
 
 
 def test_marks_of_senses_lose_no_bit() -> None:
@@ -146,6 +149,23 @@ def test_a_habitat_may_overwrite_its_senses_in_the_next_tick(players: Players) -
     assert isinstance(inner, JaxHabitat)
     reusing = players._replace(habitat=Reusing(inner))
     same(play(reusing, 3, 40, frozen=frozen), play(on_host(players), 3, 40, frozen=frozen))
+
+
+@pytest.mark.parametrize("count", [1, 31])
+def test_energy_is_perceived_alike_by_any_number_of_players(count: int) -> None:
+    """A division by 7.3 has other bits if a compiler multiplies by the reciprocal."""
+    brain, food = {"kind": "linear", "interoception": True}, {"store": 7.3}
+    of = config(MEADOW, brain=brain, metabolism=food)
+    law = of.build_law(of.build_habitat())
+    energy = np.random.default_rng(0).integers(0, ONE * 7, 31, dtype=np.int32)
+    senses = np.zeros((31, law.senses - 1), np.float32)
+    perceive = perceiver(law.alone)
+    found = [
+        np.asarray(perceive(senses[i : i + count], jnp.asarray(energy[i : i + count])))
+        for i in range(0, 31, count)
+    ]
+    expected = energy.astype(np.float32) / np.float32(ONE * 7.3)
+    assert np.concatenate(found)[:, -1].tobytes() == expected.tobytes()
 
 
 def test_each_game_begins_with_the_store_of_its_player(players: Players) -> None:

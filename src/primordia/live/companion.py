@@ -20,7 +20,7 @@ from primordia.live.paint import FAINT, Row, levels, photograph
 from primordia.live.panel import STRONG
 from primordia.live.thoughts import LABEL
 from primordia.organism.inside import CHANGED, since_change
-from primordia.organism.mind import Mind, think
+from primordia.organism.mind import Mind, perceiver, think
 from primordia.random.wide import to_host, wide
 
 
@@ -157,7 +157,7 @@ def _perceived(engine: Engine, cell: int, world: int) -> tuple[np.ndarray, np.nd
         senses, seen = own(engine.state.bodies), embodied(engine.habitat.seen())
     seed, tick = (to_host(each)[world : world + 1] for each in (worlds.seed, worlds.tick))
     mind = Mind(own(organisms.genome), wide(seed), jnp.array([cell % law.cells], jnp.int32))
-    memory, perceived = own(organisms.memory), law.perceived(senses, own(organisms.energy))
+    memory, perceived = own(organisms.memory), perceiver(law)(senses, own(organisms.energy))
     thought = shared(think, law.alone)(mind, memory, perceived, wide(tick + np.uint64(1)))
     alone = jax.tree.map(
         lambda leaf: np.asarray(leaf)[0], (perceived, memory, seen, thought.action)

@@ -1,10 +1,12 @@
 """A mind: all that determines an organism's actions, apart from the law and the senses."""
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 from jax import Array
 
 from primordia.brains.contract import Genome
+from primordia.compiled import shared
 from primordia.law import life
 from primordia.law.law import Law
 from primordia.law.life import Thought
@@ -20,6 +22,15 @@ class Mind(NamedTuple):
     """(N,), key of everything random in a life, such as the seed of its world"""
     cell: Array
     """int32 (N,), within the world"""
+
+
+def perceiver(law: Law) -> Callable[[Any, Any], Any]:
+    """Return `law.perceived` for calls from code that is not compiled.
+
+    It is compiled if it computes. Otherwise a share of energy has other bits for one organism than for
+    many (see `rounding`).
+    """
+    return shared(type(law).perceived, law) if law.interoception else law.perceived
 
 
 def think(law: Law, mind: Mind, memory: Array, senses: Array, tick: Wide) -> Thought:

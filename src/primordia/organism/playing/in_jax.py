@@ -14,7 +14,7 @@ from primordia.habitats.contract import Bodies, JaxHabitat
 from primordia.law.law import Law
 from primordia.law.life import Vitals, judge
 from primordia.law.metabolism import Rates
-from primordia.organism.mind import Mind, think
+from primordia.organism.mind import Mind, perceiver, think
 from primordia.organism.playing.seats import (
     Frozen,
     Manner,
@@ -84,7 +84,7 @@ def _opened(
     bodies = shared(type(habitat).reset, habitat)(words)
     first = None
     if frozen is not None:
-        first = law.perceived(shared(type(habitat).sense, habitat)(bodies), vitals.energy)
+        first = perceiver(law)(shared(type(habitat).sense, habitat)(bodies), vitals.energy)
     alive = np.arange(len(seated.genomes)) < count
     return _Table(mind, seated.rates, frozen, first, bodies, memory, vitals, jnp.asarray(alive))
 

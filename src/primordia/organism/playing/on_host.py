@@ -10,7 +10,7 @@ from primordia.compiled import shared
 from primordia.habitats.contract import HostHabitat
 from primordia.law.law import Law
 from primordia.law.life import judge
-from primordia.organism.mind import think
+from primordia.organism.mind import perceiver, think
 from primordia.organism.playing.seats import Manner, Seats, Stretch, Thinking, begun, mark
 from primordia.random.wide import wide
 
@@ -24,14 +24,14 @@ def stretches(
     """Play games, a tick at a time; see `games.play`."""
     mind, memory, vitals, words = shared(begun, law, habitat.words)(seated)
     rates, count, frozen = seated.rates, len(words), manner.frozen
-    think_tick, judge_tick = shared(think, law), shared(judge, law)
+    think_tick, judge_tick, perceive = shared(think, law), shared(judge, law), perceiver(law)
     alive, faulty, spent = np.ones(count, bool), jnp.zeros(count, bool), None
     habitat.open(count)
     with closing(habitat):
         senses = np.array(habitat.reset(np.arange(count), np.asarray(words)))
-        first = law.perceived(senses, vitals.energy)
+        first = perceive(senses, vitals.energy)
         for tick in range(1, manner.ticks + 1):
-            perceived = law.perceived(senses, vitals.energy)
+            perceived = perceive(senses, vitals.energy)
             met = (
                 Thinking(np.array(perceived)[None], np.asarray(memory)[None])
                 if manner.watched

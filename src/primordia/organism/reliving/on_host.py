@@ -8,7 +8,7 @@ from primordia.compiled import shared
 from primordia.habitats.contract import HostHabitat
 from primordia.law.law import Law
 from primordia.law.metabolism import Rates
-from primordia.organism.mind import Mind, think
+from primordia.organism.mind import Mind, perceiver, think
 from primordia.organism.reliving.instant import Instant, Stretch, judged
 from primordia.random.wide import wide
 
@@ -26,6 +26,7 @@ class LifeOnHost:
         habitat.open(1, watched)
         self._law, self._mind, self._habitat = law.alone, mind, habitat
         self._think, self._judged = (shared(each, self._law) for each in (think, judged))
+        self._perceive = perceiver(self._law)
 
     def embody(self, words: Array) -> np.ndarray:
         """Make a fresh body from random words uint32 (1, words). Return senses (1, S)."""
@@ -48,7 +49,7 @@ class LifeOnHost:
         lived = []
         for i in range(count):
             this = np.s_[i : i + 1]
-            perceived = self._law.perceived(now.bodies, now.vitals.energy)
+            perceived = self._perceive(now.bodies, now.vitals.energy)
             thought = self._think(self._mind, now.memory, perceived, tick.take(this))
             before, action = np.array(perceived), np.asarray(thought.action)
             senses, outcome = self._habitat.step(action, np.ones(1, bool))
