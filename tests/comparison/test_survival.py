@@ -14,9 +14,12 @@ from primordia.runs.lives import ALIVE, Lives
 
 
 def restricted_mean(lives: list[tuple[int, bool]], limit: int) -> float:
-    """Return the restricted mean, age by age: how many lives reach the age, and how many end there."""
+    """Return the restricted mean, age by age: how many lives reach the age, and how many end there.
+
+    It ends with the longest life.
+    """
     alive, area = 1.0, 0.0
-    for age in range(limit):
+    for age in range(min(limit, max(lived for lived, _ in lives))):
         area += alive
         reach = [died and lived == age + 1 for lived, died in lives if lived >= age + 1]
         alive *= 1 - sum(reach) / len(reach) if reach else 1.0

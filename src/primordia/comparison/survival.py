@@ -30,6 +30,8 @@ class Survival:
     """int64 (W, A)"""
     at_risk: np.ndarray
     """int64 (W, A): organisms on record at this age, alive and not censored before"""
+    longest: np.ndarray
+    """int64 (W,): the longest life in each world, at most the limit"""
 
     @cached_property
     def curve(self) -> np.ndarray:
@@ -60,9 +62,14 @@ class Survival:
 
     @cached_property
     def restricted_mean(self) -> np.ndarray:
-        """Mean lifespan up to the limit in each world, ticks, float64 (W,): the area under its curve."""
+        """Mean lifespan up to the limit in each world, ticks, float64 (W,): the area under its curve.
+
+        The area ends at the world's longest life: nothing is known of later ages (Efron 1967). So it is
+        a lower bound if organisms are still alive at that age.
+        """
         alive = np.insert(_alive(self.deaths, self.at_risk), 0, 1.0, axis=-1)
-        return alive @ np.diff(self.ages, prepend=0, append=self.limit).astype(float)
+        ends = np.minimum(self.steps, self.longest[:, None])
+        return (alive * np.diff(ends, axis=1)).sum(axis=1)
 
 
 def survival(lives: Lives, worlds: int, limit: int) -> Survival:
@@ -76,7 +83,9 @@ def survival(lives: Lives, worlds: int, limit: int) -> Survival:
     reached, later = (
         _reaching(lives.world, each, worlds, ages) for each in (lives.lifespan, lives.entered)
     )
-    return Survival(limit, ages, deaths, reached - later)
+    longest = np.zeros(worlds, np.int64)
+    np.maximum.at(longest, lives.world, lives.lifespan)
+    return Survival(limit, ages, deaths, reached - later, longest.clip(max=limit))
 
 
 def _reaching(world: np.ndarray, age: np.ndarray, worlds: int, ages: np.ndarray) -> np.ndarray:

@@ -210,8 +210,8 @@ def _notes(compared: Comparison) -> list[str]:
         notes.append("Late: the last quarter of the time that all worlds have lived through.")
     return [
         *notes,
-        f"A long life: {compared.age:,} ticks. Mean lifespan: ticks in each world, up to that age"
-        " (Kaplan-Meier).",
+        f"A long life: {compared.age:,} ticks. Mean lifespan: ticks in each world, up to that age, and no"
+        " longer than its longest life (Kaplan-Meier).",
         "Delta: Cliff's delta, the share of pairs of worlds in which the run's value is larger"
         " than the reference's,",
         "minus the share in which the run's value is smaller.",
