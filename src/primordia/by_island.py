@@ -19,7 +19,7 @@ def by_island(config: Any) -> list[Any]:
     Raises:
         InputError: a setting of an island is wrong; the message names the island.
     """
-    if KEY not in config.habitat:
+    if config.habitat.get(KEY) is None:
         return [config]
     return [_of_island(config, number) for number in range(config.islands.count)]
 

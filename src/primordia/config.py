@@ -145,18 +145,22 @@ class Config(Settings):
         config._kept = copies
         return config
 
+    def on_copies(self, values: dict[str, Any]) -> dict[str, Any]:
+        """Return values of settings, with the run's copies of files in place of the originals."""
+        for original, copy in self._kept.items():
+            values = replaced(values, original, copy)
+        return values
+
     def build_habitat(self) -> AnyHabitat:
         """Return the habitat, made from its class and settings.
 
         Raises:
             InputError: there is no such habitat, or the habitat does not take these settings.
         """
-        table = self.habitat
-        for original, copy in self._kept.items():
-            table = replaced(table, original, copy)
-        if KEY in table:
+        table = self.on_copies(self.habitat)
+        if table.get(KEY) is not None:
             return archipelago(habitats_of(self), self.islands)
-        return made(table, self.traits)
+        return made({name: table[name] for name in table if name != KEY}, self.traits)
 
     @property
     def traits(self) -> Traits | None:

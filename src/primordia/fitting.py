@@ -2,6 +2,8 @@
 
 from typing import Any
 
+from pydantic import ValidationError
+
 from primordia.brains.checks import check_brain
 from primordia.errors import InputError
 from primordia.habitats.archipelago import Archipelago
@@ -9,11 +11,14 @@ from primordia.habitats.checks import check_arrays
 from primordia.habitats.contract import AnyHabitat, Continuous, JaxHabitat
 from primordia.habitats.traits import KEY as TRAITS
 from primordia.law.law import Law
+from primordia.law.seasons import Schedule
 from primordia.mutations.checks import check_mutation
+from primordia.mutations.contract import find
 from primordia.own_code import LIBRARIES
-from primordia.settings.fields import rates_of
+from primordia.settings.fields import first_fault, rates_of
 from primordia.settings.islands import MIGRATION, tables_of
-from primordia.settings.tables import PARTS, did_you_mean, flat
+from primordia.settings.making import make
+from primordia.settings.tables import PARTS, did_you_mean, flat, merged
 
 
 def check(config: Any) -> None:
@@ -48,6 +53,8 @@ def check(config: Any) -> None:
         raise InputError(f"mutation.{error}") from None
     for season in config.seasons:
         _check_season(season.setting, config, law)
+        if isinstance(season, Schedule):
+            _check_value(season, config)
 
 
 def _check_islands(config: Any, law: Law) -> None:
@@ -134,3 +141,18 @@ def _check_season(setting: str, config: Any, law: Law) -> None:
         raise InputError(
             f"seasons: {setting} needs a metabolism; remove the season or add a metabolism"
         )
+
+
+def _check_value(season: Schedule, config: Any) -> None:
+    """Check whether a setting may have the value that it will have."""
+    *tables, name = config.islands.split(season.setting)[1].split(".")
+    change: dict[str, Any] = {name: season.value}
+    for table in reversed(tables):
+        change = {table: change}
+    try:
+        later = type(config).model_validate({**merged(config.model_dump(), change), "seasons": ()})
+        make("mutation", later.mutation, find)
+    except ValidationError as error:
+        raise InputError(f"seasons: {first_fault(error, type(config))}") from None
+    except InputError as error:
+        raise InputError(f"seasons: {error}") from None

@@ -17,6 +17,8 @@ from primordia.comparison import comparison
 from primordia.phylogeny import formats
 
 RUN, OUT = Path("RUN"), Path("OUT")
+HERE = SimpleNamespace(paths=(RUN,))
+"""The run of an organism."""
 
 
 @pytest.fixture
@@ -83,7 +85,7 @@ def test_all_columns_of_a_table_are_arrays(opened: MagicMock) -> None:
 
 
 CASES: list[tuple[str, tuple[Any, ...], dict[str, Any], str, Any]] = [
-    ("evaluate", ([Found(0, 203), Found(0, 4)],), {"games": 3}, "evaluate",
+    ("evaluate", ([Found(HERE, 203), Found(HERE, 4)],), {"games": 3}, "evaluate",
      call(ANY, [(3, 2), (4, 0)], games=3)),
     ("shadow", (3, 9), {"island": "i"}, "shadow", call(ANY, 3, 9, "i")),
     ("shadow", (), {}, "shadow", call(ANY, 500, None, None)),

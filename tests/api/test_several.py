@@ -149,3 +149,15 @@ def test_an_experiment_that_is_stopped_raises_a_keyboard_interrupt() -> None:
         primordia.experiment(RUN, "OUT")
     begin.assert_called_once_with(RUN, OUT)
     place.assert_called_once_with(OUT, 1, None, None, 60.0, "cpu")
+
+
+def test_organisms_of_another_run_are_refused() -> None:
+    own, other = (MagicMock(paths=(path,), path=path) for path in (RUN, MORE))
+    organism = MagicMock(run=other, id=12, world=0)
+    run = primordia.Run(RUN)
+    for asked in (run.evaluate, run.ablate):
+        with (
+            patch.object(opening, "opened", return_value=own),
+            pytest.raises(InputError, match="organism 12 is one of MORE, and not of RUN"),
+        ):
+            asked([organism])

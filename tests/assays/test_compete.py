@@ -112,6 +112,22 @@ def test_only_what_the_competition_needs_is_changed_in_the_settings(
     assert (after.cells, after.hazard, after.habitat) == (24, 0.01, before.habitat)
 
 
+def test_islands_have_no_mutation_of_their_own_in_a_competition(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    isles = [
+        {"name": "calm"},
+        {"name": "wild", "mutation": {"probability": 1.0, "scale": 0.3}, "hazard": 0.1},
+    ]
+    season = {"kind": "schedule", "setting": "wild.mutation.scale", "at": 9, "value": 0.05}
+    before = config(cells=24, habitat={"name": "cartpole", "islands": isles}, seasons=[season])
+    monkeypatch.setattr(module, "checked", lambda settings, source: settings)
+    after = module._settings(before, Path("both"), 7, 900)
+    assert after.seasons == ()
+    assert [each.mutation["probability"] for each in after.by_island] == [0.0, 0.0]
+    assert [each.hazard for each in after.by_island][1] == 0.1
+
+
 def test_each_world_is_counted_with_its_own_seed_and_names_are_in_the_order_of_genomes(
     sides: tuple[Subjects, Subjects], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -1,6 +1,9 @@
 """Organisms of one island on every island: their lives, and what is concluded from these."""
 
 import json
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -8,7 +11,8 @@ import pytest
 import primordia
 from primordia.assays import generalists as module
 from primordia.assays.generalists import Ancestor, Generalists, generalists
-from primordia.assays.transplant import Transplant, everywhere, transplant
+from primordia.assays.transplant import Transplant, born_late, everywhere, transplant
+from primordia.errors import InputError
 from primordia.habitats.archipelago import at
 from primordia.law.metabolism import Rates
 from primordia.organism.playing.games import Players, lifespans_in_games
@@ -120,3 +124,10 @@ def test_a_line_does_not_live_in_the_games_in_which_its_organism_was_chosen(
         best = zip(each.islands, last.lived, each.best_founder, strict=True)
         assert last.mastered == tuple(name for name, own, of in best if own > of)
     assert json.dumps([each.to_dict() for each in (first, second)]), "no numbers of NumPy"
+
+
+def test_a_fork_in_which_nothing_was_born_yet_is_refused() -> None:
+    lives = SimpleNamespace(late=lambda after: np.zeros(5, bool))
+    run: Any = SimpleNamespace(path=Path("fork"), lives=lives)
+    with pytest.raises(InputError, match="fork: nothing has been born since the fork"):
+        born_late(run, 0.5)

@@ -213,12 +213,13 @@ def test_a_fork_of_runs_has_all_their_worlds_and_their_own_ancestors(
     }
     arm = SimpleNamespace(paths=tuple(worlds))
     monkeypatch.setattr("primordia.experiments.file.opening.opened", lambda places: arm)
-    monkeypatch.setattr("primordia.experiments.file.read_config", configs.get)
+    archives = {path: SimpleNamespace(config=each) for path, each in configs.items()}
+    monkeypatch.setattr("primordia.experiments.file.Archive", archives.get)
     settings, runs = _of_runs(tmp_path)
     assert (settings["seed"], settings["seeds"]) == (5, 5)
     assert settings["ancestors"] == [str(tmp_path / "a" / f"{name}.safetensors") for name in "ab"]
     assert runs == [(tmp_path / "a", 2), (tmp_path / "b", 3)]
-    configs[tmp_path / "b"] = config(MEADOW, seed=8)
+    archives[tmp_path / "b"].config = config(MEADOW, seed=8)
     with pytest.raises(InputError, match="no world of seed 7, but one of 8; an arm has successive"):
         _of_runs(tmp_path)
 

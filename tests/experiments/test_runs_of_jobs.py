@@ -55,6 +55,7 @@ def test_a_fork_is_made_once_and_goes_on(
     begun: bool, forked: Campaign, calls: MagicMock, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(CLEAR, lambda run: not begun)
+    calls.Archive.return_value.config.on_copies = dict
     run, config = live(forked, 2)
     assert not calls.start.called
     limits = config.stop.model_dump()

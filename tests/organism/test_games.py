@@ -222,6 +222,21 @@ def test_a_setting_in_a_group_is_changed_by_the_name_of_the_group() -> None:
         changed(before, {"speed": 1.0, "height": 0})
 
 
+def test_what_an_island_sets_for_itself_is_changed_too() -> None:
+    islands = [{"name": "a"}, {"name": "b", "habitat": {"lifespan": 5}}]
+    before = config(MEADOW, habitat={"name": "tests.toys:Meadow", "islands": islands})
+    after = changed(before, {"lifespan": 9})
+    assert [each.build_habitat().lifespan for each in after.by_island] == [9, 9]
+    assert before.habitat["islands"][1] == islands[1]
+
+
+def test_senses_of_an_unknown_kind_are_refused() -> None:
+    asked: Any = {"games": 1, "ticks": 1, "senses": "freeze", "habitat": {}}
+    players: Any = None
+    with pytest.raises(InputError, match="'freeze' is not one of live, frozen, ignored"):
+        judged(config(MEADOW), players, [], **asked)
+
+
 def test_a_habitat_without_declared_settings_may_have_any() -> None:
     """This habitat is no model of settings; its options are those of the habitat inside."""
     before = config(MEADOW, habitat={"name": "tests.toys:Mirror", "inner": "meadow"})

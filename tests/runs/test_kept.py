@@ -9,8 +9,11 @@ import pytest
 import tomli_w
 
 import primordia
+from primordia.assays.compete import _settings
 from primordia.errors import InputError, Trouble
+from primordia.experiments.file import read
 from primordia.runs.archive import Archive
+from primordia.runs.fork import _fork_config, _matters
 from primordia.runs.kept import FOLDER, copy
 from tests.commands import complains, here
 from tests.robots import LEG, write_model
@@ -96,6 +99,27 @@ def test_a_changed_original_stops_a_run_and_is_used_if_the_user_asks(tmp_path: P
     done = here("resume", run, "--ticks", 35, "--inexact")
     assert done.returncode == 0, done.stderr
     assert not primordia.load(run).info()["exact"]
+
+
+def test_forks_experiments_and_competitions_use_the_copies(
+    run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The original may be changed or missing. A fork of unchanged settings counts as unchanged."""
+    moved = shutil.move(run.parent / "model", tmp_path / "elsewhere")
+    try:
+        held, copy = Archive(run).config, str((run / FOLDER / "walker.xml").absolute())
+        monkeypatch.setattr("primordia.assays.compete.checked", lambda settings, source: settings)
+        assert _settings(held, tmp_path / "both", 1, 9).habitat["file"] == copy
+        assert _matters(_fork_config(Archive(run), {}, 9)) == _matters(held)
+        monkeypatch.chdir(run.parent)
+        file = tmp_path / "again.toml"
+        file.write_text(
+            "question = 'Is it?'\narms = [{ name = 'same' }]\nfork = { of = 'run', at = 9 }"
+        )
+        (arm,) = read(file, tmp_path / "again").arms
+        assert arm.config.habitat["file"] == copy
+    finally:
+        shutil.move(moved, run.parent / "model")
 
 
 def test_a_changed_copy_is_damage(run: Path, tmp_path: Path) -> None:

@@ -143,7 +143,7 @@ def test_new_ratchets_look_at_multiples_of_their_periods_and_count_from_the_fork
 def test_a_season_of_a_metabolism_that_there_is_not_is_refused(tmp_path: Path) -> None:
     season = {"kind": "schedule", "setting": "metabolism.gain", "at": 5, "value": 1.0}
     (tmp_path / "config.toml").write_text(config(MEADOW).to_toml())
-    source: Any = SimpleNamespace(path=tmp_path, config=SimpleNamespace(kept={}))
+    source: Any = SimpleNamespace(path=tmp_path, config=SimpleNamespace(on_copies=dict))
     with pytest.raises(InputError, match=r"metabolism\.gain"):
         fork._fork_config(source, {"seasons": [season]}, 3)
 
@@ -200,7 +200,7 @@ def test_a_fork_has_all_other_settings_of_its_source(
     own = {"seed": 3, "hazard": 0.25, "mutation": {"probability": 0.5, "scale": 0.125}}
     own["seasons"] = [{"kind": "schedule", "setting": "hazard", "at": 9, "value": 0.5}]
     (tmp_path / "config.toml").write_text(config(MEADOW, **own).to_toml())
-    source: Any = SimpleNamespace(path=tmp_path, config=SimpleNamespace(kept={}))
+    source: Any = SimpleNamespace(path=tmp_path, config=SimpleNamespace(on_copies=dict))
     forked = fork._fork_config(source, changes, 6)
     values = config(MEADOW, **{**own, **expected}).model_dump()
     assert forked.model_dump() == values | {"fork": {"run": str(tmp_path), "tick": 6}}

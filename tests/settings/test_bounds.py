@@ -103,3 +103,14 @@ def test_a_season_of_metabolism_needs_a_metabolism() -> None:
     season = {"kind": "schedule", "setting": "metabolism.gain", "at": 2, "value": 0.5}
     with pytest.raises(InputError, match=r"seasons: metabolism.gain needs a metabolism; remove"):
         config(MILL, metabolism=None, seasons=[season])
+
+
+@pytest.mark.parametrize(
+    ("setting", "value"),
+    [("hazard", 5.0), ("mutation.probability", 50.0), ("mutation.blocks.input.probability", 1.5)],
+)
+def test_a_schedule_sets_no_value_that_its_setting_may_not_have(setting: str, value: float) -> None:
+    season = {"kind": "schedule", "setting": setting, "at": 2, "value": value}
+    with pytest.raises(InputError, match=f"seasons: {setting}: .* less than or equal to 1"):
+        config(MILL, seasons=[season])
+    assert config(MILL, seasons=[{**season, "value": 1.0}]).seasons

@@ -96,3 +96,9 @@ def test_accidents_on_one_island_are_accidents_of_the_law() -> None:
         law = law_of(habitat={"islands": islands}, seasons=seasons)
         assert law.has_hazard
         assert law.compiled.has_hazard
+
+
+def test_no_islands_is_a_plain_world() -> None:
+    without = config(habitat={"islands": "none"})
+    assert without.islands.count == len(without.by_island) == 1
+    assert without.build_habitat() == config().build_habitat()

@@ -70,6 +70,12 @@ def test_a_wrong_word_on_the_command_line_is_an_error(
     assert not out.exists()
 
 
+def test_to_go_on_with_a_run_its_directory_is_needed() -> None:
+    complains(
+        here("run", TASK, "--resume", "--quiet"), 2, "--resume needs the directory of the run"
+    )
+
+
 FILES = {
     "cells = ": "not valid TOML",
     "[mutation\nscale = 1": "not valid TOML",

@@ -131,7 +131,8 @@ class Run:
 
     def evaluate(self, organisms: Iterable[Organism], **options: Any) -> list[Evaluation]:
         """Let organisms play games side by side; see `evaluation.evaluate`."""
-        return evaluate(self.opened(), [(each.id, each.world) for each in organisms], **options)
+        run = self.opened()
+        return evaluate(run, _numbers(run, organisms), **options)
 
     def standings(
         self,
@@ -162,8 +163,9 @@ class Run:
         """Let organisms, by default the champions, play games without their learning, their memory,
         their senses or some of their weights; see `ablate.ablate`."""
         run = self.opened()
+        own = _numbers(run, organisms)
         with devices.selected(None, run.made_on):
-            return ablate(of_run(run, [(each.id, each.world) for each in organisms]), **options)
+            return ablate(of_run(run, own), **options)
 
     def heredity(self, after: float = LATE, island: str | None = None) -> list[Inherited]:
         """Measure how length of life is inherited in each world; see `history.heredity`."""
@@ -312,6 +314,20 @@ class Run:
         """Repeat the run and return the differences; see `verify.verify` and, for `device`, `resume`."""
         with devices.selected(device, self.only().made_on):
             return verify(self.only(), listen)
+
+
+def _numbers(run: Records, organisms: Iterable[Organism]) -> list[tuple[int, int]]:
+    """Return birth number and world of each organism.
+
+    Raises:
+        InputError: an organism is one of another run.
+    """
+    found = []
+    for each in organisms:
+        if each.run.paths != run.paths:
+            raise InputError(f"organism {each.id} is one of {each.run.path}, and not of {run.path}")
+        found.append((each.id, each.world))
+    return found
 
 
 def fresh_directory(name: str) -> Path:

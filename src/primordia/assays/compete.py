@@ -14,7 +14,7 @@ import numpy as np
 from primordia.assays.subjects import Subjects
 from primordia.brains import genomes
 from primordia.comparison.pairs import sign_test
-from primordia.config import Config, checked
+from primordia.config import Config, checked, parsed
 from primordia.errors import InputError
 from primordia.history.ancestry import nearest
 from primordia.history.series import mean_of_known, plain, population
@@ -22,6 +22,7 @@ from primordia.law.world import BirthCause
 from primordia.runs import loop
 from primordia.runs.archive import Archive
 from primordia.runs.lives import Lives
+from primordia.settings.islands import KEY
 
 WORLDS = 10
 """Default number of worlds."""
@@ -117,19 +118,28 @@ def compete(
 
 def _settings(config: Config, file: Path, worlds: int, ticks: int) -> Config:
     """Return the settings of worlds with these two ancestors and without mutation."""
+    habitat, seasons = dict(config.habitat), config.seasons
+    if islands := habitat.get(KEY):
+        habitat[KEY] = [{**island, "mutation": {}} for island in islands]
     changes: dict[str, Any] = {
+        "habitat": config.on_copies(habitat),
         "ancestors": (str(file),),
         "genesis": "fill",
         "inheritance": "parent",
         "mutation": {"kind": "gaussian", "probability": 0.0},
         "recombination": None,
-        "seasons": tuple(s for s in config.seasons if not s.setting.startswith("mutation.")),
+        "seasons": [s.model_dump() for s in seasons if not _of_mutation(config, s.setting)],
         "seeds": worlds,
         "stop": {"ticks": ticks},
         "fork": None,
     }
     values = config.model_dump(exclude=set(changes)) | changes
-    return checked(Config.model_validate(values), source="compete")
+    return checked(parsed(values, source="compete"), source="compete")
+
+
+def _of_mutation(config: Config, setting: str) -> bool:
+    """Return whether a season's setting is one of the mutation, of the world or of an island."""
+    return config.islands.split(setting)[1].startswith("mutation.")
 
 
 def _shares(lives: Lives, seed: np.uint64, tick: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from primordia.assays.subjects import GAMES, TICKS
-from primordia.assays.transplant import everywhere, islands_of
+from primordia.assays.transplant import born_late, everywhere, islands_of
 from primordia.history import series
 from primordia.history.rebuilding import descent
 from primordia.history.series import plain, spaced
@@ -123,7 +123,7 @@ def generalists(
         InputError: the run has no islands, or nothing was born.
     """
     islands = islands_of(run)
-    lives, late = run.lives, np.flatnonzero(run.lives.late(after))
+    lives, late = run.lives, born_late(run, after)
     found = []
     for world in np.unique(lives.world[late]).tolist():
         rows = late[lives.world[late] == world]

@@ -85,7 +85,7 @@ def transplant(
         InputError: the run has no islands, or nothing was born.
     """
     islands = islands_of(run)
-    lives, late = run.lives, np.flatnonzero(run.lives.late(after))
+    lives, late = run.lives, born_late(run, after)
     native = islands.of_cells(lives.cell[late])
     found = []
     for world in np.unique(lives.world[late]).tolist():
@@ -112,6 +112,17 @@ def islands_of(run: Records) -> Any:
     if islands.count == 1:
         raise InputError(f"{run.path}: its worlds have no islands; see [[habitat.islands]]")
     return islands
+
+
+def born_late(run: Records, after: float) -> np.ndarray:
+    """Return the rows of organisms born after this share of their world's births, int64 (n,).
+
+    Raises:
+        InputError: nothing was born.
+    """
+    if not len(late := np.flatnonzero(run.lives.late(after))):
+        raise InputError(f"{run.path}: nothing has been born since the fork")
+    return late
 
 
 def everywhere(run: Records, players: Players, world: int, games: int, ticks: int) -> np.ndarray:

@@ -23,7 +23,7 @@ from primordia.cli.flags import (
     trust_option,
 )
 from primordia.cli.streams import report
-from primordia.errors import Trouble
+from primordia.errors import InputError, Trouble
 from primordia.printable import printable
 
 if TYPE_CHECKING:
@@ -73,6 +73,8 @@ def run(
         set_value(settings, f"stop.{name}", value)
     if ancestor:
         set_value(settings, "ancestors", [str(file) for file in ancestor])
+    if options["resume"] and out is None:
+        raise InputError("--resume needs the directory of the run: --out")
     path = out or api.fresh_directory(api.default_name(config.load(task, settings)))
     _drive(
         path, quiet, speed, lambda listen: api.run(task, path, settings, listen=listen, **options)

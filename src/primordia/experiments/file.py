@@ -30,7 +30,7 @@ from primordia.errors import InputError
 from primordia.experiments import plan as plans
 from primordia.experiments.plan import ArmPlan, Fork, Plan, Source
 from primordia.runs import opening
-from primordia.runs.directory import read_config
+from primordia.runs.archive import Archive
 from primordia.settings.base import UNREACHED, Settings
 from primordia.settings.fields import first_fault
 from primordia.settings.tables import (
@@ -176,14 +176,14 @@ def _of_experiment(
 def _of_runs(place: Path) -> tuple[dict[str, Any], list[tuple[Path, int]]]:
     """Return the settings of runs of one arm, and the runs, each with its number of worlds."""
     paths = opening.opened([place]).paths
-    configs = [read_config(path) for path in paths]
+    configs = [Archive(path).config for path in paths]
     for one, after in pairwise(configs):
         if (following := one.seed + one.seeds) != after.seed:
             raise InputError(
                 f"its runs have no world of seed {following}, but one of {after.seed}; an arm has"
                 " successive seeds, so fork some of the runs by a pattern"
             )
-    settings = replaced(configs[0].model_dump(mode="json"), None, NONE)
+    settings = configs[0].on_copies(replaced(configs[0].model_dump(mode="json"), None, NONE))
     settings["seeds"] = sum(each.seeds for each in configs)
     settings["ancestors"] = [str(paths[0] / genomes) for genomes in configs[0].ancestors]
     return settings, [(path, each.seeds) for path, each in zip(paths, configs, strict=True)]

@@ -55,8 +55,9 @@ def _live(plan: Plan, job: Job, out: Path, checkpoint_every: float, watch: "_Wat
     files.check_own_folder(run)
     unbegun = directory.clear_unbegun(run)
     if unbegun and job.source is not None and plan.fork is not None:
-        source = Path(os.path.normpath(out / job.source))
-        fork(Archive(source), plan.fork.at, run, _changes(config), watch)
+        source = Archive(Path(os.path.normpath(out / job.source)))
+        changes = source.config.on_copies(_changes(config))  # files that the source has copied
+        fork(source, plan.fork.at, run, changes, watch)
     if unbegun and job.source is None:
         loop.start(config, run, checkpoint_every=checkpoint_every, listen=watch)
     else:

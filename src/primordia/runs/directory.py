@@ -32,7 +32,7 @@ GLANCE = 0.05
 """Seconds to wait for a lock, since `is_written` in another process may hold it briefly."""
 UNBEGUN = f"{files.TEMPORARY}run"
 """The file that marks a directory in which a run is being started; other files are never removed."""
-OWN = (VERSIONS, *FOLDERS, code.FOLDER, kept.FOLDER, checkpoint.ORIGIN, *INPUTS, LOCK)
+OWN = (VERSIONS, *FOLDERS, code.FOLDER, kept.FOLDER, checkpoint.ORIGIN, *INPUTS, LOCK, FAULTS)
 """The names in a new run's directory."""
 
 

@@ -27,7 +27,7 @@ from primordia.runs.lives import Lives
 from primordia.runs.loop import Listener, Status, recorder_for
 from primordia.runs.manifest import Progress
 from primordia.settings.limits import ForkedFrom
-from primordia.settings.tables import from_toml, merged, replaced
+from primordia.settings.tables import from_toml, merged
 
 HARMLESS = {"stop", "fork", "about", "sample_every"}
 """Settings that do not change the course of a world."""
@@ -95,9 +95,7 @@ def _fork_config(source: Archive, settings: dict[str, Any], at: int) -> Config:
     if "task" in settings:
         raise InputError("a fork keeps the task of its source; remove the setting 'task'")
     values = from_toml(source.path / "config.toml")
-    for original, copy in source.config.kept.items():
-        values = replaced(values, original, copy)
-    values = merged(values, settings)
+    values = merged(source.config.on_copies(values), settings)
     values["fork"] = ForkedFrom(run=str(bundle.origin_of(source.path)), tick=at).model_dump()
     return validated(values, source=str(source.path))
 
@@ -197,13 +195,18 @@ def _adapt(world: World, before: Engine, after: Engine, old: Config, new: Config
     if new.metabolism is not None and old.metabolism is None:
         store = after.law.in_cells(worlds.climate)["metabolism.store"]
         organisms = organisms._replace(energy=to_fixed_point(store))
-    if new.model_dump(exclude=HARMLESS) != old.model_dump(exclude=HARMLESS):
+    if _matters(new) != _matters(old):
         worlds = worlds._replace(  # the fork must saturate again
             calm=jnp.zeros_like(worlds.calm),
             saturated=never(worlds.calm.shape),
             saturated_births=never(worlds.calm.shape),
         )
     return World(organisms, worlds)
+
+
+def _matters(config: Config) -> dict[str, Any]:
+    """Return the settings that lives depend on. A file is named by its copy, which a fork has of it."""
+    return {**config.model_dump(exclude=HARMLESS), "habitat": config.on_copies(config.habitat)}
 
 
 def _looks(worlds: Worlds, after: Engine, at: int) -> Looks:

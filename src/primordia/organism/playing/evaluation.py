@@ -7,7 +7,7 @@ game itself, and whether they react to their senses.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
 from primordia.runs.records import Records, on_its_device
 from primordia.settings.fields import setting_fields
+from primordia.settings.islands import KEY
 from primordia.settings.tables import NONE, did_you_mean, merged, replaced
 
 GAMES = 30
@@ -167,6 +168,8 @@ def judged(
     """
     if games < 1 or ticks < 1:
         raise InputError("evaluate needs at least one game of at least one tick")
+    if senses not in get_args(Senses):
+        raise InputError(f"senses: {senses!r} is not one of {', '.join(get_args(Senses))}")
     players = (there or own)._replace(habitat=changed(config, habitat).build_habitat())
     script = play(elsewhere(own), 1, ticks) if senses == "ignored" else None
     fixed = players.deterministic
@@ -209,7 +212,12 @@ def changed(config: Config, changes: Mapping[str, Any]) -> Config:
         if known and name not in {each.partition(".")[0] for each in known}:
             hint = did_you_mean(name, known)
             raise InputError(f"this run's habitat has no setting {name!r}{hint}")
-    values = replaced(merged(config.habitat, dict(changes)), NONE, None)
+    own, values = dict(changes), merged(config.habitat, dict(changes))
+    if (islands := values.get(KEY)) and KEY not in changes:  # also what an island sets for itself
+        values[KEY] = [
+            {**each, "habitat": merged(each.get("habitat", {}), own)} for each in islands
+        ]
+    values = replaced(values, NONE, None)
     after = config.model_copy(update={"habitat": values})
     habitat = after.build_habitat()
     if (habitat.senses_size, habitat.action) != (before.senses_size, before.action):
