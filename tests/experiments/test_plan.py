@@ -222,6 +222,10 @@ def test_a_fork_of_runs_has_all_their_worlds_and_their_own_ancestors(
     archives[tmp_path / "b"].config = config(MEADOW, seed=8)
     with pytest.raises(InputError, match="no world of seed 7, but one of 8; an arm has successive"):
         _of_runs(tmp_path)
+    sent = {tmp_path / "a": Path("sent.zip"), tmp_path / "b": tmp_path / "b"}
+    monkeypatch.setattr("primordia.experiments.file.bundle.origin_of", sent.get)
+    with pytest.raises(InputError, match=r"sent.zip is a bundle; make it a run again"):
+        _of_runs(tmp_path)
 
 
 def test_a_fork_has_the_jobs_and_settings_of_its_source(tmp_path: Path) -> None:

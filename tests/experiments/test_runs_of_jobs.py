@@ -10,6 +10,7 @@ from unittest.mock import ANY, MagicMock
 import pytest
 
 from primordia.config import Config
+from primordia.errors import InputError, InUseError
 from primordia.experiments import job as jobs
 from primordia.experiments.campaign import Campaign, begin
 from primordia.experiments.ledger import Ledger
@@ -70,6 +71,29 @@ def test_a_fork_is_made_once_and_goes_on(
     own = {"task", "about", "fork", "seeds", "ancestors"}
     assert {*changes} == {*Config.model_fields} - own
     assert (changes["seed"], changes["hazard"]) == (config.seed, config.hazard) == (3, 0.05)
+
+
+@pytest.mark.parametrize(("written", "raised"), [(True, InUseError), (False, InputError)])
+def test_a_fork_that_another_command_begins_meanwhile_is_left_to_it(
+    written: bool,
+    raised: type[InputError],
+    forked: Campaign,
+    calls: MagicMock,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """If the other command has ended, the job goes on; any other error is the job's."""
+    calls.fork.side_effect = InputError("exists already")
+    calls.Archive.return_value.config.on_copies = dict
+    monkeypatch.setattr("primordia.experiments.job.directory.is_written", lambda run: written)
+    monkeypatch.setattr(CLEAR, lambda run: True)
+    with pytest.raises(raised):
+        live(forked, 2)
+    assert not calls.resume.called
+    free = iter([True, False])
+    monkeypatch.setattr("primordia.experiments.job.directory.is_written", lambda run: False)
+    monkeypatch.setattr(CLEAR, lambda run: next(free))
+    live(forked, 2)
+    calls.resume.assert_called_once()
 
 
 @pytest.mark.parametrize(

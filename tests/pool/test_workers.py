@@ -1,5 +1,6 @@
 """Simulators in worker processes: what happens when they fail."""
 
+import errno
 import os
 import signal
 import subprocess
@@ -15,6 +16,7 @@ import pytest
 
 from primordia import interrupts
 from primordia.errors import Trouble
+from primordia.pool import board
 from primordia.pool import workers as pools
 from primordia.pool.board import STEP
 from primordia.pool.workers import Workers
@@ -70,6 +72,41 @@ def test_states_are_restored_without_a_time_limit_and_a_killed_worker_is_noticed
         os.kill(int(pool.arrays["who"][2]), signal.SIGKILL)
         with pytest.raises(Trouble, match="ended with status -9"):
             pool.step(ALL)
+
+
+def test_each_slow_reset_is_an_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only some cells begin new lives. No single reset takes longer than the run waits."""
+    todo = np.array([True, False, True, True, False, True, False])
+    with counters(workers=2) as pool:
+        answers: list[int] = []
+        monkeypatch.setattr(pools, "_receive", lambda worker, count: answers.append(count))
+        pool.reset(todo)
+        monkeypatch.undo()
+        for worker, count in zip(pool._workers, answers, strict=True):
+            pools._receive(worker, count)
+        pool.step(ALL)
+    assert answers == [2 + 1, 2 + 1]
+
+
+def test_memory_that_is_shared_has_room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """If there is none in memory, the file is where other temporary files are."""
+    reserve, folders = board._reserve, []
+
+    def full(file: int, begin: int, size: int) -> None:
+        folders.append(os.readlink(f"/proc/self/fd/{file}"))
+        if len(folders) < fits:
+            raise OSError(errno.ENOSPC, "no space")
+        reserve(file, begin, size)
+
+    monkeypatch.setattr(board, "_reserve", full)
+    monkeypatch.setattr(board.tempfile, "tempdir", str(tmp_path))
+    fits = 2
+    file, memory = board.shared_memory(4096)
+    assert (len(memory), folders[-1].startswith(str(tmp_path))) == (4096, True)
+    file.close()
+    fits = 9
+    with pytest.raises(Trouble, match="no room for the 4,096 bytes that simulators share"):
+        board.shared_memory(4096)
 
 
 def test_a_worker_that_hangs_is_noticed_after_a_time_limit_and_killed_at_the_end(

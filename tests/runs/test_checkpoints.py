@@ -82,6 +82,15 @@ def test_a_manifest_names_the_settings_and_the_code(run: Path) -> None:
     )
 
 
+@pytest.mark.parametrize("first", ["checkpoints/000000", "origin"])
+def test_a_file_that_is_edited_while_the_run_lives_is_not_approved(run: Path, first: str) -> None:
+    checkpoint.write(run, run / first, {}, Recorder(run, 1, SCHEMA), PROGRESS)
+    (run / "config.toml").write_text("other")
+    save(run, 1)
+    with pytest.raises(Trouble, match=r"config\.toml .*; put the file back"):
+        checkpoint.newest(run)
+
+
 def test_faults_of_checkpoints_are_in_order_newest_first(run: Path) -> None:
     """A fork without a whole checkpoint begins with its origin; another run must be repeated."""
     for number in range(2):

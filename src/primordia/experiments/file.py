@@ -29,7 +29,7 @@ from primordia.config import Config
 from primordia.errors import InputError
 from primordia.experiments import plan as plans
 from primordia.experiments.plan import ArmPlan, Fork, Plan, Source
-from primordia.runs import opening
+from primordia.runs import bundle, opening
 from primordia.runs.archive import Archive
 from primordia.settings.base import UNREACHED, Settings
 from primordia.settings.fields import first_fault
@@ -176,6 +176,8 @@ def _of_experiment(
 def _of_runs(place: Path) -> tuple[dict[str, Any], list[tuple[Path, int]]]:
     """Return the settings of runs of one arm, and the runs, each with its number of worlds."""
     paths = opening.opened([place]).paths
+    if packed := [origin for path in paths if (origin := bundle.origin_of(path)) != path]:
+        raise InputError(f"{packed[0]} is a bundle; make it a run again with `primordia unbundle`")
     configs = [Archive(path).config for path in paths]
     for one, after in pairwise(configs):
         if (following := one.seed + one.seeds) != after.seed:

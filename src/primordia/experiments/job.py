@@ -57,7 +57,13 @@ def _live(plan: Plan, job: Job, out: Path, checkpoint_every: float, watch: "_Wat
     if unbegun and job.source is not None and plan.fork is not None:
         source = Archive(Path(os.path.normpath(out / job.source)))
         changes = source.config.on_copies(_changes(config))  # files that the source has copied
-        fork(source, plan.fork.at, run, changes, watch)
+        try:
+            fork(source, plan.fork.at, run, changes, watch)
+        except InputError:  # another command has begun the job meanwhile
+            if directory.is_written(run):
+                raise InUseError(f"job {job.number} is being run by another process") from None
+            if directory.clear_unbegun(run):
+                raise
     if unbegun and job.source is None:
         loop.start(config, run, checkpoint_every=checkpoint_every, listen=watch)
     else:

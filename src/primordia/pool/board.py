@@ -8,6 +8,8 @@ from typing import BinaryIO
 
 import numpy as np
 
+from primordia.errors import Trouble
+
 Field = tuple[str, tuple[int, ...]]
 """dtype and shape of an array for one cell"""
 
@@ -18,6 +20,10 @@ READY = b"."
 
 ALIGNMENT = 64
 """bytes, a cache line"""
+
+
+_reserve = getattr(os, "posix_fallocate", lambda file, _, size: os.ftruncate(file, size))
+"""`posix_fallocate`, which macOS does not have"""
 
 
 def size(fields: dict[str, Field], cells: int) -> int:
@@ -48,7 +54,17 @@ def shared_memory(size: int) -> tuple[BinaryIO, mmap.mmap]:
     The file has no name, so nothing is left when all its processes have ended, even by kill -9.
     """
     in_memory = Path("/dev/shm")
-    folder = in_memory if in_memory.is_dir() and os.access(in_memory, os.W_OK) else None
-    file = tempfile.TemporaryFile(dir=folder)  # noqa: SIM115
-    file.truncate(size)
-    return file, mmap.mmap(file.fileno(), size)
+    usable = in_memory.is_dir() and os.access(in_memory, os.W_OK)
+    for folder in (in_memory, None) if usable else (None,):
+        file = tempfile.TemporaryFile(dir=folder)  # noqa: SIM115
+        try:
+            # Without room for all of it, a process would be killed when it first writes there.
+            _reserve(file.fileno(), 0, size)
+        except OSError:
+            file.close()
+            continue
+        return file, mmap.mmap(file.fileno(), size)
+    raise Trouble(
+        f"no room for the {size:,} bytes that simulators share, neither in {in_memory} nor in"
+        f" {tempfile.gettempdir()}; free space, or choose fewer cells"
+    )

@@ -74,6 +74,9 @@ def serve(
         elif command == RESET:
             for cell in own[todo[own]].tolist():
                 simulator.reset(cell)
+                answers.write(
+                    READY
+                )  # many slow resets take longer than the run waits for an answer
         elif command == SAVE:
             for cell in own.tolist():
                 state = simulator.save(cell)

@@ -26,7 +26,8 @@ from primordia.pool.board import LOAD, READY, RESET, SAVE, STEP
 from primordia.pool.contract import Pool
 
 PATIENCE = 20.0
-"""Longest wait for an answer of a worker, in seconds; a worker answers after each simulator it makes."""
+"""Longest wait for an answer of a worker, in seconds. A worker answers after each tick, and after each
+simulator that it makes or resets."""
 
 
 class Workers(Pool):
@@ -94,7 +95,9 @@ class Workers(Pool):
         """Begin new lives in the cells of `todo`, bool (N,)."""
         self.arrays["todo"][:] = todo
         self._command(RESET)
-        self.finish()
+        for first, worker in enumerate(self._workers):
+            lives = np.count_nonzero(todo[first :: self._count])
+            _receive(worker, (lives + 1) * len(READY))
 
     def save(self) -> list[bytes]:
         """Return the state of each cell's simulator."""

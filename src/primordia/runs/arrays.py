@@ -39,6 +39,10 @@ class Arrays(Mapping[str, np.ndarray]):
             small = file.stat().st_size <= SMALL
             self._archive = zipfile.ZipFile(io.BytesIO(file.read_bytes()) if small else file)
             self._sizes = _sizes(self._archive, file.stat().st_size)
+        except FileNotFoundError:
+            raise Trouble(
+                f"{file} is gone: the run has gone on meanwhile and keeps newer checkpoints; try again"
+            ) from None
         except Exception:  # zipfile raises errors of many kinds for other files
             raise self._damaged() from None
         self._read: dict[str, np.ndarray] = {}

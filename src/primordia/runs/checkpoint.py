@@ -11,6 +11,7 @@ import os
 import re
 import shutil
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -89,7 +90,7 @@ def write(
             files.sync(state)
             content = Manifest(
                 progress=progress,
-                inputs={name: Seal(**files.seal(run / name)) for name in _inputs(run)},
+                inputs=_seals(run),
                 state=Seal(**files.seal(state)),
                 segments={table.name: table.segments for table in recorder.tables},
                 digests={
@@ -102,6 +103,17 @@ def write(
             files.sync(temporary)
             temporary.rename(final)
             files.sync(final.parent)
+
+
+def _seals(run: Path) -> dict[str, Seal]:
+    """Return the seals of a run's inputs, by name: those of its newest checkpoint, if there is one.
+
+    Inputs never change. A file that was edited while the run lives must not be approved.
+    """
+    for path in (*reversed(numbered(run)), run / ORIGIN):
+        with suppress(OSError, ValueError):
+            return manifests.read(path / MANIFEST).inputs
+    return {name: Seal(**files.seal(run / name)) for name in _inputs(run)}
 
 
 def _inputs(run: Path) -> list[str]:
