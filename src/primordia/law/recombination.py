@@ -37,10 +37,10 @@ class Recombination(Settings):
         """Return genomes float32 (K, P); each unit comes from either parent with the same
         probability.
 
-        A row is the part of a block at one index of its first axis. A row holds the weights into
-        one neuron if the layer has at least as many inputs as neurons. In blocks with the same
-        number of rows, rows with the same index come from the same parent, so that a neuron keeps
-        all of its weights.
+        A row is the part of a block at one index of its first axis. A row holds the weights into one
+        neuron if the layer has more inputs than neurons; otherwise, and in square blocks such as
+        recurrent weights, those out of one input. In blocks with the same number of rows, rows with
+        the same index come from the same parent.
         """
         units = self.units(layout)
         count = int(units.max()) + 1
