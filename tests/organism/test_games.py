@@ -11,7 +11,7 @@ from primordia.errors import InputError
 from primordia.habitats.contract import Continuous, Discrete
 from primordia.organism.playing import evaluation
 from primordia.organism.playing.evaluation import Evaluation, Spread, changed, judged
-from primordia.organism.playing.games import Games, Players, _marks
+from primordia.organism.playing.games import Games, Players, _marks, lifespans_in_games, play
 from primordia.organism.playing.seats import Stretch
 from primordia.random.wide import wide
 from primordia.settings.base import Settings
@@ -228,6 +228,14 @@ def test_what_an_island_sets_for_itself_is_changed_too() -> None:
     after = changed(before, {"lifespan": 9})
     assert [each.build_habitat().lifespan for each in after.by_island] == [9, 9]
     assert before.habitat["islands"][1] == islands[1]
+
+
+@pytest.mark.parametrize(("games", "ticks"), [(0, 9), (9, 0)])
+def test_no_game_and_no_tick_are_refused(games: int, ticks: int) -> None:
+    players: Any = SimpleNamespace(genomes=np.zeros((1, 1)))
+    for played in (play, lifespans_in_games):
+        with pytest.raises(InputError, match="at least one game of at least one tick"):
+            played(players, games, ticks)
 
 
 def test_senses_of_an_unknown_kind_are_refused() -> None:

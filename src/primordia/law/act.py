@@ -57,7 +57,7 @@ class Act(Settings):
     organism that dies by accident in the tick of its try has paid the price.
 
     If the endowment is chosen, it is the share 1 / (1 + exp(-y)) of the parent's energy, where y is the
-    brain's last output.
+    brain's last output, but at most what is left when the price is paid.
     """
 
     kind: Literal["act"] = Field(description="act: organisms copy themselves when they choose to")

@@ -230,7 +230,8 @@ class Archive(Records):
 
     def segments(self, name: str, columns: Sequence[str] | None = None) -> Iterator[pa.Table]:
         """Read a table segment by segment, the open tail last; see `table`."""
-        assert name in TABLES
+        if name not in TABLES:
+            raise InputError(f"a run has no table {name!r}; its tables are {', '.join(TABLES)}")
         wanted, tail = columns and list(columns), self.state[f"tail.{name}"]
         closed = self.last.manifest.segments[name]
         empty = self.schema.arrow(name, tail[:0])

@@ -204,7 +204,11 @@ class Records:
         return Schema.described(self.config.cells, self.description)
 
     def table(self, name: str, columns: Sequence[str] | None = None) -> pa.Table:
-        """Read `births`, `deaths` or `metrics`, all columns or some, in the order of events."""
+        """Read `births`, `deaths` or `metrics`, all columns or some, in the order of events.
+
+        Raises:
+            InputError: there is no such table.
+        """
         return pa.concat_tables(self.segments(name, columns))
 
     @cached_property

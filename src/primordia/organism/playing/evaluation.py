@@ -166,8 +166,6 @@ def judged(
 
     `there` are the same players on another island, if they play there.
     """
-    if games < 1 or ticks < 1:
-        raise InputError("evaluate needs at least one game of at least one tick")
     if senses not in get_args(Senses):
         raise InputError(f"senses: {senses!r} is not one of {', '.join(get_args(Senses))}")
     players = (there or own)._replace(habitat=changed(config, habitat).build_habitat())

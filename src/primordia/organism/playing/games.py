@@ -7,6 +7,7 @@ from typing import NamedTuple
 import jax
 import numpy as np
 
+from primordia.errors import InputError
 from primordia.habitats.archipelago import Archipelago
 from primordia.habitats.contract import AnyHabitat
 from primordia.law.law import Law
@@ -133,7 +134,12 @@ def _in_parts(
     """Play the games of some players at once, then of the next; a player's games are not separated.
 
     Yield the index of these players, (n,), and their games.
+
+    Raises:
+        InputError: there is no game, or no tick.
     """
+    if games < 1 or ticks < 1:
+        raise InputError("at least one game of at least one tick is needed")
     size = max(AT_ONCE[players.habitat.kind] // games, 1)
     parts = [
         (index[first : first + size], here.take(slice(first, first + size)))
