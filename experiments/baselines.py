@@ -13,10 +13,13 @@ them, unless all games of the task are the same. The table goes to `results/` be
 and CSV; if the experiment's own games are there, its organisms stand in the same table.
 
     python experiments/baselines.py --seed 0 --seeds 5 experiments/atari/pong.toml
+    python experiments/baselines.py --reward score experiments/robots/halfcheetah-ratchet.toml
 
-prints the same for other seeds and writes no table. Each search is kept in `results/searches`, or in
-`runs/searches` if its seed is below 1,000. So an interrupted command goes on where it was. A search is
-made again if the task's settings change; delete its file after changes of this script.
+The first prints the same for other seeds and writes no table. The second rewards the score of the game of
+which the task is made, without hunger, and writes a table of its own. `--method` leaves the other methods
+out. Each search is kept in `results/searches`, or in `runs/searches` if its seed is below 1,000. So an
+interrupted command goes on where it was. A search is made again if the task's settings change; delete its
+file after changes of this script.
 
 The strategy's settings below were chosen in a few trials on seeds below 1,000 of MinAtar. CartPole's
 table, which names its settings, is older.
@@ -27,6 +30,7 @@ import json
 import os
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -49,7 +53,7 @@ from primordia.files import write_text
 from primordia.law.genesis import initial_climate
 from primordia.law.metabolism import Rates
 from primordia.organism.playing.evaluation import judged
-from primordia.organism.playing.games import Players, lifespans
+from primordia.organism.playing.games import Players, lifespans, play
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import wide
 
@@ -63,14 +67,17 @@ AGAIN = 5
 SPREAD, RATE = 0.3, 0.05
 """The evolution strategy's noise and Adam's rate, in standard deviations of founders' weights."""
 COLUMNS = ("lifespan", "score", "length")
+WORDS = {"life": "length of life", "score": "score of the game that the task is made of"}
+"""The rewards."""
 
 
 class Search:
     """A task's habitat and brains, and the ticks that one search may still live."""
 
-    def __init__(self, config: Config, seed: int, ticks: int) -> None:
-        """Take the task's settings, the seed of all random bits, and the ticks of all lives together."""
-        self.config, self.seed, self.ticks = config, seed, ticks
+    def __init__(self, config: Config, seed: int, ticks: int, reward: str) -> None:
+        """Take the task's settings, the seed of all random bits, the ticks of all lives together, and
+        the reward, `life` or `score`."""
+        self.config, self.seed, self.ticks, self.reward = config, seed, ticks, reward
         self.law = config.build_law(config.build_habitat())
         self.noise = np.random.default_rng(seed)
         self.founders_scale = per_weight(self.law, "founder_scale")
@@ -90,10 +97,17 @@ class Search:
         """Return new founders, float32 (count, P)."""
         return self.founders_scale * self.noise.standard_normal((count, len(self.founders_scale)))
 
-    def lifespans(self, genomes: np.ndarray) -> np.ndarray:
-        """Let each genome (K, P) live once and return the ticks, int64 (K,)."""
-        found = lifespans(self.players(genomes), LONGEST)
-        self.lived, self.lives = self.lived + int(found.sum()), self.lives + len(genomes)
+    def rewards(self, genomes: np.ndarray) -> np.ndarray:
+        """Let each genome (K, P) live once, or play the game, and return the reward (K,)."""
+        players = self.players(genomes)
+        if self.reward == "score":
+            game = players.habitat.original()
+            players = players._replace(habitat=game, law=replace(players.law, metabolism=None))
+            games = play(players, 1, min(game.episode or LONGEST, LONGEST))
+            ticks, found = games.ticks[:, 0], games.food[:, 0]
+        else:
+            ticks = found = lifespans(players, LONGEST)
+        self.lived, self.lives = self.lived + int(ticks.sum()), self.lives + len(genomes)
         return found
 
     def players(self, genomes: np.ndarray) -> Players:
@@ -106,13 +120,13 @@ class Search:
 
 
 def best_founder(search: Search) -> np.ndarray:
-    """Return the longest-lived of as many founders as the ticks suffice for."""
-    best, longest = search.founders(1)[0], -1
+    """Return the best of as many founders as the ticks suffice for."""
+    best, highest = search.founders(1)[0], -np.inf
     while not search.over:
         some = search.founders(POPULATION)
-        lived = search.lifespans(some)
-        if lived.max() > longest:
-            best, longest = some[lived.argmax()], lived.max()
+        found = search.rewards(some)
+        if found.max() > highest:
+            best, highest = some[found.argmax()], found.max()
     return best
 
 
@@ -121,9 +135,9 @@ def genetic_algorithm(search: Search) -> np.ndarray:
     scales, density = per_weight(search.law, "scale"), search.law.heredity.mutation.density
     choice = np.random.default_rng([search.seed, 1])
     generation = search.founders(POPULATION)
-    lived = search.lifespans(generation)
+    found = search.rewards(generation)
     while True:
-        parents = generation[np.argsort(-lived, kind="stable")[:PARENTS]]
+        parents = generation[np.argsort(-found, kind="stable")[:PARENTS]]
         elite = parents[0] if search.repeats else parents[again(search, parents).argmax()]
         if search.over:
             return elite
@@ -131,12 +145,12 @@ def genetic_algorithm(search: Search) -> np.ndarray:
         changes = scales * search.noise.standard_normal(chosen.shape)
         children = chosen + np.where(choice.random(chosen.shape) < density, changes, 0)
         generation = np.concatenate([elite[None], children])
-        lived = search.lifespans(generation)
+        found = search.rewards(generation)
 
 
 def again(search: Search, genomes: np.ndarray) -> np.ndarray:
-    """Let genomes (K, P) live AGAIN times each and return their mean lifespans (K,)."""
-    return search.lifespans(np.repeat(genomes, AGAIN, axis=0)).reshape(-1, AGAIN).mean(axis=1)
+    """Let genomes (K, P) live or play AGAIN times each and return their mean rewards (K,)."""
+    return search.rewards(np.repeat(genomes, AGAIN, axis=0)).reshape(-1, AGAIN).mean(axis=1)
 
 
 def evolution_strategy(search: Search) -> np.ndarray:
@@ -153,9 +167,9 @@ def evolution_strategy(search: Search) -> np.ndarray:
     while not search.over:
         key, to_ask, to_tell = jax.random.split(key, 3)
         asked, state = strategy.ask(to_ask, state, strategy.default_params)
-        lived = search.lifespans(search.founders_scale * np.asarray(asked))
+        found = search.rewards(search.founders_scale * np.asarray(asked))
         # evosax minimises.
-        state, _ = strategy.tell(to_tell, asked, -lived, state, strategy.default_params)
+        state, _ = strategy.tell(to_tell, asked, -found, state, strategy.default_params)
     return search.founders_scale * np.asarray(state.mean)
 
 
@@ -172,12 +186,14 @@ class Trial(NamedTuple):
     file: Path
     method: str
     seed: int
+    reward: str
 
 
 def rows_of(trial: Trial) -> list[dict[str, Any]]:
     """Return what a search found, a row for each way of playing; it is kept for the next time."""
     folder = trial.file.parent / "results" if trial.seed >= SEED else Path("runs")
-    name = f"{trial.file.stem}-{trial.method.replace(' ', '-')}-{trial.seed}.json"
+    of = "" if trial.reward == "life" else f"{trial.reward}-"
+    name = f"{trial.file.stem}-{of}{trial.method.replace(' ', '-')}-{trial.seed}.json"
     kept = folder / "searches" / name
     settings = signature(reference(trial.file))
     known = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}
@@ -205,7 +221,7 @@ def searched(trial: Trial) -> list[dict[str, Any]]:
     """Search, let the chosen genome play, and return a row for each way of playing."""
     device.prepare()
     config = reference(trial.file)
-    search = Search(config, trial.seed, budget(config))
+    search = Search(config, trial.seed, budget(config), trial.reward)
     players = search.players(METHODS[trial.method](search)[None])
     who = {"who": trial.method, "seed": trial.seed, "lives": search.lives, "ticks": search.lived}
     rows = []
@@ -222,15 +238,17 @@ def reference(file: Path) -> Config:
     return read(file, Path("runs", file.stem)).arms[0].config
 
 
-def searches(file: Path, seed: int, seeds: int) -> list[dict[str, Any]]:
-    """Return the rows of all methods from a number of seeds, on all cores."""
-    trials = [Trial(file, method, seed + k) for k in range(seeds) for method in METHODS]
+def searches(
+    file: Path, seed: int, seeds: int, reward: str, methods: list[str]
+) -> list[dict[str, Any]]:
+    """Return the rows of methods from a number of seeds, on all cores."""
+    trials = [Trial(file, method, seed + k, reward) for k in range(seeds) for method in methods]
     os.environ["PRIMORDIA_CORES"] = "1"
     with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
         return [row for rows in pool.map(rows_of, trials) for row in rows]
 
 
-def summary(file: Path, rows: pd.DataFrame) -> str:
+def summary(file: Path, rows: pd.DataFrame, reward: str) -> str:
     """Return a table of medians and quartiles over seeds, beside the experiment's organisms."""
     lines = []
     beside = evolved(file, rows)
@@ -241,7 +259,7 @@ def summary(file: Path, rows: pd.DataFrame) -> str:
     seeds = f"{rows.seed.min()} to {rows.seed.max()}"
     note = (
         f"Medians over seeds {seeds} (quartiles) of the median of {GAMES} games, or of the one game where"
-        " nothing is drawn at random. The reward is the length of life. Lives and games were cut at"
+        " nothing is drawn at random. The reward is the {WORDS[reward]}. Lives and games were cut at"
         f" {LONGEST:,} ticks. Generations have {POPULATION} genomes; the genetic algorithm has {PARENTS}"
         f" parents and the task's mutation; the strategy's noise is {SPREAD:g} of founders' and Adam's"
         f" rate {RATE:g}. Rows without ticks are worlds of the experiment with these seeds."
@@ -266,13 +284,16 @@ def main() -> None:
     parser.add_argument("files", nargs="+", type=Path, help="experiments")
     parser.add_argument("--seed", type=int, default=SEED, help="the first seed")
     parser.add_argument("--seeds", type=int, default=SEEDS, help="number of seeds of each method")
+    parser.add_argument("--reward", choices=WORDS, default="life")
+    parser.add_argument("--method", choices=METHODS, action="append", help="one of the methods")
     own = parser.parse_args()
     for file in own.files:
-        rows = searches(file, own.seed, own.seeds)
-        text = summary(file, pd.DataFrame(rows))
+        rows = searches(file, own.seed, own.seeds, own.reward, own.method or [*METHODS])
+        text = summary(file, pd.DataFrame(rows), own.reward)
         print(text)
         if (own.seed, own.seeds) == (SEED, SEEDS):
-            write_rows(file.parent / "results" / f"{file.stem}-baselines", rows, text)
+            of = "baselines" if own.reward == "life" else f"{own.reward}-baselines"
+            write_rows(file.parent / "results" / f"{file.stem}-{of}", rows, text)
 
 
 if __name__ == "__main__":

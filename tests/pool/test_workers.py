@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import textwrap
 import time
 from collections.abc import Iterator
@@ -99,7 +100,7 @@ def test_memory_that_is_shared_has_room(tmp_path: Path, monkeypatch: pytest.Monk
         reserve(file, begin, size)
 
     monkeypatch.setattr(board, "_reserve", full)
-    monkeypatch.setattr(board.tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     fits = 2
     file, memory = board.shared_memory(4096)
     assert (len(memory), folders[-1].startswith(str(tmp_path))) == (4096, True)

@@ -96,7 +96,7 @@ class Workers(Pool):
         self.arrays["todo"][:] = todo
         self._command(RESET)
         for first, worker in enumerate(self._workers):
-            lives = np.count_nonzero(todo[first :: self._count])
+            lives = int(np.count_nonzero(todo[first :: self._count]))
             _receive(worker, (lives + 1) * len(READY))
 
     def save(self) -> list[bytes]:
