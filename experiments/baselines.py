@@ -15,11 +15,11 @@ and CSV; if the experiment's own games are there, its organisms stand in the sam
     python experiments/baselines.py --seed 0 --seeds 5 experiments/atari/pong.toml
     python experiments/baselines.py --reward score experiments/robots/halfcheetah-ratchet.toml
 
-The first prints the same for other seeds and writes no table. The second rewards the score of the game of
-which the task is made, without hunger, and writes a table of its own. `--method` leaves the other methods
-out. Each search is kept in `results/searches`, or in `runs/searches` if its seed is below 1,000. So an
-interrupted command goes on where it was. A search is made again if the task's settings change; delete its
-file after changes of this script.
+The first prints the same for other seeds and writes no table. The second rewards the score of the game
+of which the task is made, without hunger, in its first SHORT ticks. It writes a table of its own.
+`--method` leaves the other methods out. Each search is kept in `results/searches`, or in `runs/searches`
+if its seed is below 1,000. So an interrupted command goes on where it was. A search is made again if the
+task's settings change; delete its file after changes of this script.
 
 The strategy's settings below were chosen in a few trials on seeds below 1,000 of MinAtar. CartPole's
 table, which names its settings, is older.
@@ -60,6 +60,8 @@ from primordia.random.wide import wide
 SEED, SEEDS = 1000, 10
 LONGEST = 20_000
 """Ticks at which a life is cut, in the search and in games."""
+SHORT = 250
+"""Ticks at which a game is cut in which the score is rewarded."""
 POPULATION, PARENTS = 256, 10
 """Genomes of a generation; the longest-lived of them that have children, in the genetic algorithm."""
 AGAIN = 5
@@ -103,7 +105,7 @@ class Search:
         if self.reward == "score":
             game = players.habitat.original()
             players = players._replace(habitat=game, law=replace(players.law, metabolism=None))
-            games = play(players, 1, min(game.episode or LONGEST, LONGEST))
+            games = play(players, 1, SHORT)
             ticks, found = games.ticks[:, 0], games.food[:, 0]
         else:
             ticks = found = lifespans(players, LONGEST)
@@ -257,12 +259,13 @@ def summary(file: Path, rows: pd.DataFrame, reward: str) -> str:
         ticks = spread_text(group["ticks"].tolist()) if group["ticks"].notna().all() else ""
         lines.append([who, way, len(group), ticks, *cells])
     seeds = f"{rows.seed.min()} to {rows.seed.max()}"
+    cut = f", and games that were rewarded at {SHORT}" if reward == "score" else ""
     note = (
         f"Medians over seeds {seeds} (quartiles) of the median of {GAMES} games, or of the one game where"
-        " nothing is drawn at random. The reward is the {WORDS[reward]}. Lives and games were cut at"
-        f" {LONGEST:,} ticks. Generations have {POPULATION} genomes; the genetic algorithm has {PARENTS}"
-        f" parents and the task's mutation; the strategy's noise is {SPREAD:g} of founders' and Adam's"
-        f" rate {RATE:g}. Rows without ticks are worlds of the experiment with these seeds."
+        f" nothing is drawn at random. The reward is the {WORDS[reward]}. Lives and games were cut at"
+        f" {LONGEST:,} ticks{cut}. Generations have {POPULATION} genomes; the genetic algorithm has"
+        f" {PARENTS} parents and the task's mutation; the strategy's noise is {SPREAD:g} of founders' and"
+        f" Adam's rate {RATE:g}. Rows without ticks are worlds of the experiment with these seeds."
     )
     head = ["who", "plays", "seeds", "ticks lived", *(name for name in COLUMNS if name in rows)]
     return f"{table(head, lines)}\n\n{note}"
