@@ -1,5 +1,6 @@
 """Bodies on the host: they are stored and restored, or reset if the habitat cannot store them."""
 
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
@@ -11,12 +12,15 @@ from primordia.engine.held import Packing
 from primordia.engine.hosted import HostedChunks
 from primordia.engine.state import State, named_leaves
 from primordia.errors import InputError, Trouble
-from primordia.habitats.contract import Ability
+from primordia.habitats.contract import Ability, Outcome
 from primordia.law.genesis import birth_words, body_words
 from primordia.law.world import World
 from primordia.random.keys import Purpose, stream
 from primordia.random.wide import Wide, wide
+from primordia.runs import loop
 from primordia.settings.islands import Islands
+from tests.toys import HostCartPole
+from tests.worlds import HOSTED, config
 
 CELLS, WORDS = 3, 2
 """Cells of each of two worlds, and random words of a body."""
@@ -172,3 +176,43 @@ def test_packed_arrays_of_any_type_and_rank_are_unpacked_bit_for_bit() -> None:
     for before, after in zip(jax.tree.leaves(tree), jax.tree.leaves(again), strict=True):
         assert (after.shape, after.dtype) == (before.shape, before.dtype)
         assert np.asarray(after).tobytes() == before.tobytes()
+
+
+class Odd(HostCartPole):
+    """A habitat whose senses, deaths or saved arrays are not those of the contract."""
+
+    def reset(self, born: np.ndarray, words: np.ndarray) -> np.ndarray:
+        senses = super().reset(born, words)
+        return senses.astype(np.float64) if FAULT == "reset" else senses
+
+    def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
+        senses, outcome = super().step(action, alive)
+        if FAULT == "fatal":
+            return senses, Outcome(outcome.fatal.astype(np.float32))
+        return (senses[:, :3] if FAULT == "step" else senses), outcome
+
+    def save(self) -> dict[str, np.ndarray]:
+        state = self.state.astype(object) if FAULT == "save" else self.state
+        return {"cartpole": state}
+
+
+FAULT = ""
+
+
+@pytest.mark.parametrize(
+    ("fault", "says"),
+    [
+        ("reset", r"gives senses from reset as float64 \(6, 4\); the contract says float32"),
+        ("step", r"gives senses from step as float32 \(6, 3\)"),
+        ("fatal", r"gives outcome.fatal as float32"),
+        ("save", "saves cartpole as Python objects; save numbers or bytes"),
+    ],
+)
+def test_what_a_habitat_of_ones_own_first_returns_is_checked(
+    fault: str, says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(globals(), "FAULT", fault)
+    own = config({**HOSTED, "task": "odd"}, habitat={"name": f"{__name__}:Odd"}, stop={"ticks": 9})
+    with pytest.raises(InputError, match=says):
+        loop.start(own, tmp_path / "run")
+    assert not (tmp_path / "run").exists()

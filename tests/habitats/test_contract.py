@@ -76,6 +76,10 @@ class Proud(Plain):
     tallies = ("score",)
 
 
+class Mumbling(Plain):
+    buttons = ("left", "left")
+
+
 class Nameless(HostCartPole):
     tallies = ("score",)
 
@@ -166,6 +170,7 @@ def test_organisms_live_in_habitats_of_every_form(name: str, options: dict[str, 
         ("Senseless", ["Senseless is not a complete habitat: it has no 'senses_size'"]),
         ("Proud", ["Proud has tallies", "HostHabitat that defines tally()"]),
         ("Nameless", ["Nameless has tallies", "tally()"]),
+        ("Mumbling", ["has buttons = ('left', 'left')", "each of the 2 choices a name of its own"]),
         ("Configured", ["habitat.episode is missing"]),
     ],
 )

@@ -146,6 +146,13 @@ def test_an_output_that_is_not_finite_is_a_fault_wherever_it_is() -> None:
     np.testing.assert_array_equal(found.action, outputs)
 
 
+def test_energy_spent_that_is_not_finite_is_a_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+    spent = np.float32([np.nan, np.inf, -np.inf, 0.5])
+    monkeypatch.setattr(Free, "spent", lambda *_: jnp.asarray(spent))
+    found = thought(Motor(), np.zeros((4, 3), np.float32))
+    assert found.faulty.tolist() == [True, True, True, False]
+
+
 def test_the_gaussian_motor_adds_noise_of_its_scale_to_numbers_and_leaves_choices_alone() -> None:
     """A choice is the largest output, whatever the noise. Each number beside it has noise of its own."""
     outputs = np.random.default_rng(5).normal(size=(40, 6)).astype(np.float32)

@@ -17,6 +17,7 @@ from primordia.engine.messages import Messages
 from primordia.engine.state import Limits, State, filled, named_leaves
 from primordia.engine.tallies import Tallies
 from primordia.errors import InputError, Trouble
+from primordia.habitats.checks import check_outcome
 from primordia.habitats.contract import Ability, HostHabitat
 from primordia.law import events as log
 from primordia.law.genesis import begin
@@ -24,15 +25,20 @@ from primordia.law.law import Law
 from primordia.law.life import Thought
 from primordia.law.tick import no_fates
 from primordia.law.world import World
+from primordia.settings.tracing import Tracing
 
 
 class HostedChunks:
     """A compiled law, and a habitat on the host that owns the bodies; `State.bodies` holds senses."""
 
+    _unseen: frozenset[str] = frozenset()
+    """functions of the habitat whose first results will be checked, since it may be the user's"""
+
     def __init__(self, law: Law, habitat: HostHabitat) -> None:
         self.exact = habitat.exact
         self._law, self._habitat = law, habitat
         self._tallies, self._messages = Tallies(habitat, law.worlds), Messages(habitat, law.cells)
+        self._unseen = frozenset(("reset", "step"))
         self._lists = log.empty(law)
         self.events = self._lists
         """events of the latest chunk"""
@@ -110,6 +116,9 @@ class HostedChunks:
         # np.asarray is three times as fast as bool() of JAX's array.
         while passed < most and not np.asarray(fates.eventful):
             senses, outcome = self._habitat.step(np.asarray(thought.action), alive)
+            if self._unseen:
+                self._check("step", senses, len(alive))
+                check_outcome(Tracing("habitat", self._habitat), outcome, len(alive))
             passed += 1
             now, thought, fates = self._calls.live(
                 genome, now, thought, senses, outcome, active, np.int32(passed)
@@ -119,14 +128,29 @@ class HostedChunks:
     def _born(self, senses: np.ndarray, cells: np.ndarray, words: Array) -> np.ndarray:
         """Give the organisms of some cells new bodies, made of their rows of `words`; return senses."""
         if len(cells):
-            senses[cells] = self._habitat.reset(cells, np.asarray(words)[cells])
+            given = self._habitat.reset(cells, np.asarray(words)[cells])
+            if self._unseen:
+                self._check("reset", given, len(cells))
+            senses[cells] = given
         return senses
+
+    def _check(self, function: str, senses: np.ndarray, count: int) -> None:
+        """Check the senses that `reset` or `step` returns; see `_unseen`."""
+        shape = (count, self._habitat.senses_size)
+        Tracing("habitat", self._habitat).typed(
+            f"senses from {function}", senses, shape, np.float32
+        )
+        self._unseen -= {function}
 
     def save(self, state: State) -> dict[str, np.ndarray]:
         """Return the arrays of the whole state, with the habitat's bodies, by name."""
         bodies = {f"bodies.{name}": array for name, array in self._habitat.save().items()}
         bodies["bodies.senses"] = np.asarray(state.bodies)
         for name, array in bodies.items():
+            Tracing("habitat", self._habitat).need(
+                not np.asarray(array).dtype.hasobject,
+                f"saves {name.removeprefix('bodies.')} as Python objects; save numbers or bytes",
+            )
             rows = self._law.worlds * len(self._law.islands.with_rows(name))
             if np.shape(array)[:1] != (rows,):
                 raise InputError(

@@ -69,6 +69,12 @@ def _check_options(tracing: Tracing, habitat: AnyHabitat) -> None:
         not tallies or habitat.can(Ability.TALLY),
         "has tallies, so it must be a HostHabitat that defines tally()",
     )
+    if (buttons := habitat.buttons) is not None:
+        size = habitat.action.size
+        tracing.need(
+            len({*buttons}) == len(buttons) == size,
+            f"has buttons = {buttons!r}; give each of the {size} choices a name of its own",
+        )
     low, high = RATES
     tracing.need(
         rate is None or (isinstance(rate, int | float) and low <= rate <= high),

@@ -83,6 +83,8 @@ def think(
     after, output = law.brain(genome, memory, senses)
     faulty, copying = (~jnp.isfinite(output)).any(axis=1), None
     spent = law.brain.spent(memory, after, law.senses, law.outputs)
+    if spent is not None:
+        faulty = faulty | ~jnp.isfinite(spent)
     if law.act is not None:
         output, copying = output[:, : law.action.size], output[:, law.action.size :]
     return Thought(after, act(law, key, cell, output), faulty, spent, copying)

@@ -99,7 +99,7 @@ class _Trial:
         """Live a life to its end, or to an error. Return the record of each age."""
         try:
             observation, _ = env.reset(seed=life.seed)
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             self._note(f"reset raises an error: {environment.line(error)}")
             return [ENDED]
         return [self._seen(observation, 0.0, False, False), *self.steps(env, life.rows, watched)]
@@ -110,7 +110,7 @@ class _Trial:
         for row in rows:
             try:
                 seen.append(self._step(env, row, watched))
-            except Exception as error:
+            except (Exception, SystemExit) as error:
                 self._note(f"step raises an error: {environment.line(error)}")
                 seen.append(ENDED)
             if seen[-1].endswith(ENDED):

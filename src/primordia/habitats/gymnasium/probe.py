@@ -48,7 +48,7 @@ def _probe(env: str, options: str) -> Probe:
     made = environment.make(env, json.loads(options))
     try:
         observation, acting = Observation(made.observation_space), Acting(made.action_space)
-    except ValueError as error:
+    except (AttributeError, ValueError) as error:
         raise ValueError(f"env: {env}: {error}") from None
     rate = made.metadata.get("render_fps")
     draws = environment.PICTURES in (made.metadata.get("render_modes") or ())

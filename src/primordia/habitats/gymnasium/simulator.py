@@ -96,7 +96,7 @@ class Environments:
         try:
             observation, info = life.env.reset(seed=seed)
             self._tell(cell, observation, info)
-        except Exception as error:
+        except (Exception, SystemExit) as error:  # games may leave by sys.exit
             self._arrays["obs"][cell] = 0
             life.failed = environment.line(error)
 
@@ -121,7 +121,7 @@ class Environments:
                 given = (observation, reward, terminated, truncated, info)
                 arrays["food"][cell] = self._food(*given)
             self._tell(cell, observation, info)
-        except Exception as error:
+        except (Exception, SystemExit) as error:  # games may leave by sys.exit
             self._fail(cell, environment.line(error))
 
     def _tell(self, cell: int, observation: Any, info: dict[str, Any]) -> None:
