@@ -322,9 +322,9 @@ def _numbers(run: Records, organisms: Iterable[Organism]) -> list[tuple[int, int
     Raises:
         InputError: an organism is one of another run.
     """
-    found = []
+    found, here = [], [path.resolve() for path in run.paths]
     for each in organisms:
-        if each.run.paths != run.paths:
+        if [path.resolve() for path in each.run.paths] != here:
             raise InputError(f"organism {each.id} is one of {each.run.path}, and not of {run.path}")
         found.append((each.id, each.world))
     return found

@@ -63,9 +63,8 @@ class _Pedigree:
         self._notes = run.notes_of(births)
         self._climate = past.of_lives(births, births.born)
         numbers = (wide(each) for each in (run.world_seeds[births.world], births.id, births.born))
-        self._counts = jax.device_get(
-            tuple(numbers)
-        )  # NumPy takes entries ten times as fast as JAX
+        # JAX takes entries ten times as slowly as NumPy.
+        self._counts = jax.device_get(tuple(numbers))
         self._repeat = shared(_repeat, run.heredity, redrawn)
 
     def genomes(self, rows: np.ndarray) -> np.ndarray:

@@ -74,9 +74,8 @@ def serve(
         elif command == RESET:
             for cell in own[todo[own]].tolist():
                 simulator.reset(cell)
-                answers.write(
-                    READY
-                )  # many slow resets take longer than the run waits for an answer
+                # Many slow resets take longer than the run waits for an answer.
+                answers.write(READY)
         elif command == SAVE:
             for cell in own.tolist():
                 state = simulator.save(cell)

@@ -210,11 +210,9 @@ def changed(config: Config, changes: Mapping[str, Any]) -> Config:
         if known and name not in {each.partition(".")[0] for each in known}:
             hint = did_you_mean(name, known)
             raise InputError(f"this run's habitat has no setting {name!r}{hint}")
-    own, values = dict(changes), merged(config.habitat, dict(changes))
-    if (islands := values.get(KEY)) and KEY not in changes:  # also what an island sets for itself
-        values[KEY] = [
-            {**each, "habitat": merged(each.get("habitat", {}), own)} for each in islands
-        ]
+    values = merged(config.habitat, dict(changes))
+    if (islands := values.get(KEY)) and KEY not in changes:
+        values[KEY] = [_island_changed(each, changes) for each in islands]
     values = replaced(values, NONE, None)
     after = config.model_copy(update={"habitat": values})
     habitat = after.build_habitat()
@@ -225,6 +223,15 @@ def changed(config: Config, changes: Mapping[str, Any]) -> Config:
             f" {before.action.size} actions"
         )
     return after
+
+
+def _island_changed(island: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return an island's table with those changes whose settings it states itself."""
+    table = island.get("habitat", {})
+    return {
+        **island,
+        "habitat": merged(table, {name: changes[name] for name in changes if name in table}),
+    }
 
 
 def _in_the_original(players: Players) -> Players | None:
