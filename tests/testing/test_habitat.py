@@ -264,6 +264,13 @@ class Partial(Wagon):
         return {"place": self.place, "speed": self.speed, "clock": np.zeros(2)}
 
 
+class Divided(Wagon):
+    def step(self, action: np.ndarray, alive: np.ndarray) -> tuple[np.ndarray, Outcome]:
+        senses, outcome = super().step(action, alive)
+        with np.errstate(invalid="ignore"):
+            return senses, outcome._replace(food=np.zeros(len(alive), np.float32) / np.float32(0))
+
+
 HOST_FAULTS: list[tuple[Any, str]] = [
     (
         Amnesiac(),
@@ -276,6 +283,7 @@ HOST_FAULTS: list[tuple[Any, str]] = [
     (Intruder(), "when others are born beside it"),
     (Gambler(), "at age 0 when it begins again, .*; draw only from `words`"),
     (Doubled(), r"gives senses from step as float64 \(32, 1\); the contract says float32"),
+    (Divided(), "gives values of food that are not finite, for bodies that live on"),
     (Stored(), "defines save without load; define both, or neither"),
     (Scored(), "does not save its counts; save them as 'tally'"),
     (Scribble(), "returns str from picture; return a PIL.Image.Image"),

@@ -138,6 +138,7 @@ class Stage:
         given = self.lives.words[own]
         senses = self.habitat.reset(cells, given.copy())
         typed(part, "senses from reset", senses, (len(cells), part.senses_size), np.float32)
+        need(np.isfinite(senses).all(), part, "gives senses from reset that are not finite")
         for body, row in zip(own, np.array(senses), strict=True):
             self.pasts[body] = [(row,)]
         self.age[cells], self.alive[cells] = 0, True
@@ -162,6 +163,12 @@ class Stage:
         for ended in (outcome.fatal, outcome.fault, outcome.expired):
             if ended is not None:
                 self.alive &= ~np.asarray(ended)
+        living, given = active & self.alive, {"senses": senses, **outcome._asdict()}
+        for name, each in given.items():
+            finite = each is None or np.isfinite(np.asarray(each)[living]).all()
+            need(
+                finite, part, f"gives values of {name} that are not finite, for bodies that live on"
+            )
 
     def play(self, ticks: int) -> None:
         """Begin all lives, and live some ticks."""
