@@ -149,6 +149,22 @@ def test_every_command_and_block_of_a_page_works(
         try_out(kind, text, tmp_path, law)
 
 
+MADE = re.compile(
+    r"(?:--out|unbundle \S+|\.run\([^)\n]*?) \"?runs/([\w-]+)|experiment ([\w-]+)\.toml"
+)
+"""The folder of a run that a command or program makes, and of an experiment."""
+
+
+def test_no_two_pages_make_the_same_folder() -> None:
+    """Else who follows both is told that it is taken, or reads another page's run."""
+    pages: dict[str, str] = {}
+    for page in PAGES:
+        for _, text in blocks(page):
+            for run_folder, experiment in MADE.findall(text):
+                made = run_folder or experiment
+                assert pages.setdefault(made, name(page)) == name(page), made
+
+
 def test_no_sentence_goes_on_as_an_item_of_a_list() -> None:
     """A line of a paragraph that begins with `470.` would be shown as an item of its own."""
     for page in PAGES:
