@@ -226,6 +226,7 @@ def test_unknown_numbers_are_dashes_and_zeros_are_not() -> None:
     assert [row[1] for row in persists.rows] == ["-"] * 4 + ["0 of 0"]
     never = tables.threshold("run", [Threshold(0, 1.0, 0.0, 2.0)])
     assert [row[1] for row in never.rows] == ["1", "0", "2", "0", "0 of 1"]
+    assert (len(persists.notes), len(never.notes)) == (0, 1), "why there are no copies"
 
 
 def test_transplants_are_told_by_island_of_birth_and_by_island_of_life() -> None:

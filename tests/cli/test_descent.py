@@ -37,7 +37,7 @@ def step(place: int, birth: str, **other: Any) -> dict[str, Any]:
     """Return an ancestor; no two of its numbers are equal."""
     names = "organism", "generation", "born", "lifespan", "children", "tenth", "half", "fixed"
     numbers = {name: 1000 * number + place for number, name in enumerate(names, 1)}
-    return {**numbers, "birth_cause": birth, "cause": "starved", **other}
+    return {**numbers, "parent": None, "birth_cause": birth, "cause": "starved", **other}
 
 
 def ancestors(steps: list[dict[str, Any]], **other: Any) -> Any:
@@ -48,6 +48,14 @@ def ancestors(steps: list[dict[str, Any]], **other: Any) -> Any:
         "telling": lambda most: places[:most], "islands": None, "traits": None,
     }  # fmt: skip
     return SimpleNamespace(**{**values, **other})
+
+
+def test_a_founder_that_was_born_of_another_is_no_end_of_the_shares(shown: Shown) -> None:
+    """So it is without heredity."""
+    descent._show_ancestors(RUN, ancestors([step(0, "founder", parent=7)]))
+    assert any(note.startswith("Genomes are not inherited") for note in shown["notes"])
+    descent._show_ancestors(RUN, ancestors([step(0, "founder"), step(1, "mutant", parent=0)]))
+    assert not any(note.startswith("Genomes are not inherited") for note in shown["notes"])
 
 
 def test_a_row_of_an_ancestor_has_its_life_its_mutation_and_its_spread(shown: Shown) -> None:

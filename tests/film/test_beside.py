@@ -149,8 +149,12 @@ def test_the_oldest_so_far_begins_its_life_when_it_is_first_shown(
     lives = joined(parts, np.array([0, 1])).of_world(1).take(np.array([0, 2]))
     ticks = np.arange(1, 201)
     shown = list(beside.oldest(a_run(lives), lives, ticks))
-    assert shown[:120] == [Beside((0, 1, at), "the oldest so far: organism 0") for at in range(120)]
-    assert shown[120:] == [Beside((2, 1, at), "the oldest so far: organism 2") for at in range(80)]
+    assert shown[:120] == [
+        Beside((0, 1, at), "the oldest by tick 1: organism 0") for at in range(120)
+    ]
+    assert shown[120:] == [
+        Beside((2, 1, at), "the oldest by tick 121: organism 2") for at in range(80)
+    ]
     assert counts == [120, 80], "the pictures that are needed of each"
     assert list(beside.chosen(a_run(lives), 1200, 1, 2)) == [
         Beside((1200, 1, at), "organism 1,200") for at in range(2)

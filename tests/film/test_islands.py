@@ -136,8 +136,8 @@ def test_no_life_is_shown_while_the_oldest_lives_where_nothing_is_drawn(
     assert found[-1].life is not None
     assert (asked, found[0].about, found[-1].about) == (
         [1],
-        "the oldest so far: organism 0",
-        "the oldest so far: organism 1",
+        "the oldest by tick 0: organism 0",
+        "the oldest by tick 120: organism 1",
     )
 
 

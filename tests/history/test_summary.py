@@ -33,8 +33,8 @@ def test_the_summary_of_one_world_names_its_moments() -> None:
         "T: 1 world of 8 cells",
         "  seed 0: 5,000 ticks, 900 births, deaths: 890 fatal, 2 hazard, extinct 2 times",
         "    8 alive, mean age 70, oldest 300",
-        "    one common ancestor since tick 70 (birth 9)",
-        "    saturated at tick 4,000 (birth 800)",
+        "    all descend from one child of a founder since tick 70 (9 births until then)",
+        "    saturated at tick 4,000 (800 births until then)",
     ]
     lines = (
         (1, 1, "extinct once, after half of the cells were full"),
@@ -140,7 +140,8 @@ def test_five_unequal_worlds_are_summarised_together() -> None:
         "T: 5 worlds of 8 cells",
         "  seeds 0, 3, 6, others up to 12: 5,010 ticks, 1,010 births, deaths: 11,111 fatal, 30 hazard",
         "    23 alive, oldest 2,400; extinctions: 8 (2 after half of the cells were full)",
-        "    2 of 5 with one common ancestor, births until then: median later (quartiles 30, later)",
+        "    2 of 5 descend from one child of a founder, births until then: median later (quartiles 30,"
+        " later)",
         "    4 of 5 saturated, births until then: median 80 (quartiles 40, 120)",
         "    good lines persist in 2 of 5 worlds; medians p 0.5, v 0.25, s 2: s (1 - p (1 - v)) is 1",
     ]

@@ -50,9 +50,9 @@ def test_the_story_of_a_saturated_world() -> None:
     assert happened == (
         "In 7,200 ticks (2 min 24 s of simulated time), 1,500 organisms were born, and 1,490 died:"
         " 1,200 killed by their world, 200 of hunger, 90 by accident. The world died out 2 times,"
-        " and life began again with founders in all cells. Since tick 2,700 (birth 1,017) all living"
-        " organisms descend from one ancestor. At tick 6,543 the world was saturated: all 24 cells"
-        " were full, and no organism had died for 2,000 ticks."
+        " and life began again with founders in all cells. Since tick 2,700 (1,017 births until"
+        " then) all living organisms descend from one child of a founder. At tick 6,543 the world was"
+        " saturated: all 24 cells were full, and no organism had died for 2,000 ticks."
     )
 
 

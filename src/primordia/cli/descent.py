@@ -132,31 +132,13 @@ def _world(text: str) -> int | None:
 
 def _show_ancestors(run: Path, found: "Ancestors") -> None:
     places = found.telling(ROWS).tolist()
-    notes = [
-        "change: L2 norm of the change that mutation made to the genome.",
-        "10 %, 50 %, all: first tick after which more than 10 %, more than 50 %, or all of the living"
-        " descended from the ancestor.",
-    ]
-    if left_out := len(found.line) - len(places):
-        notes.append(
-            f"{left_out:,} ancestors are left out. The table shows the first, the last, those that"
-            " outlived their parents most, and others evenly spaced. --json shows all."
-        )
-    if found.unknown:
-        which = "The changes" if found.changes is None else "The changes before a fork"
-        notes.append(f"{which} are unknown: {found.unknown}.")
-    homes = () if found.islands is None else ("island", "migrations")
-    if homes:
-        notes.append("migrations: births up to this organism on another island than the parent's.")
-    if found.traits:
-        notes.append(f"{', '.join(found.traits)}: factors of the habitat's own parameters.")
     show_table(
         f"{run}: the line of organism {found.organism:,} of world {found.world}",
         (
             "organism",
             "line",
             "born",
-            *homes,
+            *(() if found.islands is None else ("island", "migrations")),
             *(found.traits or ()),
             "lived",
             "death",
@@ -167,8 +149,36 @@ def _show_ancestors(run: Path, found: "Ancestors") -> None:
             "all",
         ),
         [_ancestor_row(found, place) for place in places],
-        [*notes, _common_text(found)],
+        [*_ancestor_notes(found, len(found.line) - len(places)), _common_text(found)],
     )
+
+
+def _ancestor_notes(found: "Ancestors", left_out: int) -> list[str]:
+    """Return what the columns mean, and what is missing."""
+    notes = [
+        "change: L2 norm of the change that mutation made to the genome.",
+        "10 %, 50 %, all: first tick after which more than 10 %, more than 50 %, or all of the living"
+        " descended from the ancestor.",
+    ]
+    if left_out:
+        notes.append(
+            f"{left_out:,} ancestors are left out. The table shows the first, the last, those that"
+            " outlived their parents most, and others evenly spaced. --json shows all."
+        )
+    if found.unknown:
+        which = "The changes" if found.changes is None else "The changes before a fork"
+        notes.append(f"{which} are unknown: {found.unknown}.")
+    first = found.step(0)
+    if first["birth_cause"] == "founder" and first["parent"] is not None:
+        notes.append(
+            "Genomes are not inherited, so the line is this organism alone. 10 %, 50 %, all and the"
+            " common ancestor follow who was born of whom."
+        )
+    if found.islands is not None:
+        notes.append("migrations: births up to this organism on another island than the parent's.")
+    if found.traits:
+        notes.append(f"{', '.join(found.traits)}: factors of the habitat's own parameters.")
+    return notes
 
 
 def _ancestor_row(found: "Ancestors", place: int) -> tuple[str, ...]:

@@ -66,18 +66,18 @@ def shadow_text(found: "Shadow") -> str:
         f" {2 * told['organisms']:,} lives, {told['ticks']:,} ticks"
     )
     lines = [f"{'':12}{'mean life':>12}{f'reach {found.cut:,} ticks':>24}"]
-    for line in ("original", "shadow"):
+    for line, name in (("original", "organisms"), ("shadow", "shadows")):
         reached = told[line]["reached_cut"]
         share = f"{reached:,} ({reached / told['organisms']:.1%})"
-        lines.append(f"{line:12}{told[line]['mean']:>12,.1f}{share:>24}")
+        lines.append(f"{name:12}{told[line]['mean']:>12,.1f}{share:>24}")
     within = found.ratio_interval
     bounds = f", 95 % interval {within[0]:.2f} to {within[1]:.2f}" if within else ""
     return "\n  ".join(
         [
             head,
             *lines,
-            f"originals live longer than shadows in {longer} worlds and shorter in {shorter}"
-            f" (sign test, p = {found.p:.2g})",
-            f"in the median world originals live {found.ratio:.2f} times as long{bounds}",
+            f"organisms live longer than their shadows in {counted(longer, 'world')} and shorter"
+            f" in {shorter:,} (sign test, p = {found.p:.2g})",
+            f"in the median world organisms live {found.ratio:.2f} times as long{bounds}",
         ]
     )

@@ -31,6 +31,7 @@ class Beside(NamedTuple):
 def oldest(run: Records, lives: Lives, ticks: np.ndarray) -> Iterator[Beside]:
     """Yield a picture for each moment: the life of the oldest organism so far, from birth on.
 
+    The words name the tick at which it became the oldest, since an older one may have to wait; see LEAST.
     There is no picture while the oldest lives on an island whose habitat draws none.
 
     Args:
@@ -38,14 +39,14 @@ def oldest(run: Records, lives: Lives, ticks: np.ndarray) -> Iterator[Beside]:
         lives: the lives of one world.
         ticks: the moments, int64 (F,).
     """
-    now, rows = -1, shown(oldest_so_far(lives, ticks), LEAST)
-    for row in rows.tolist():
+    now, since, rows = -1, 0, shown(oldest_so_far(lives, ticks), LEAST)
+    for row, tick in zip(rows.tolist(), ticks.tolist(), strict=True):
         if row != now:
-            now, count = row, int((rows == row).sum())
+            now, since, count = row, tick, int((rows == row).sum())
             pictures: Iterator[Image.Image | None] = repeat(None)
             if not replay.lacking(at(run.habitat, int(lives.cell[row]))):
                 pictures = pictures_of(run, int(lives.id[row]), int(lives.world[row]), count)
-        yield Beside(next(pictures), f"the oldest so far: organism {lives.id[row]:,}")
+        yield Beside(next(pictures), f"the oldest by tick {since:,}: organism {lives.id[row]:,}")
 
 
 def chosen(run: Records, organism: int, world: int, count: int) -> Iterator[Beside]:

@@ -49,7 +49,9 @@ def _one_world(world: dict[str, Any]) -> list[str]:
     if "tallies" in world:
         lines.append(f"    tallies of the living: {_tallies(world['tallies'])}")
     if world["fixation"]:
-        lines.append(f"    one common ancestor since {_when(world['fixation'])}")
+        lines.append(
+            f"    all descend from one child of a founder since {_when(world['fixation'])}"
+        )
     lines += _act([world]) + _traits([world]) + _threshold([world]) + _islands([world])
     if world["saturation"]:
         return [*lines, f"    saturated at {_when(world['saturation'])}"]
@@ -128,7 +130,7 @@ def _tallies(tallies: dict[str, dict[str, float]]) -> str:
 
 
 def _when(moment: dict[str, int]) -> str:
-    return f"tick {moment['tick']:,} (birth {moment['births']:,})"
+    return f"tick {moment['tick']:,} ({moment['births']:,} births until then)"
 
 
 def _all_worlds(worlds: list[dict[str, Any]]) -> list[str]:
@@ -143,7 +145,7 @@ def _all_worlds(worlds: list[dict[str, Any]]) -> list[str]:
         f"{total('births'):,} births, deaths: {_causes(worlds)}",
         f"    {total('alive'):,} alive, oldest {oldest:,}; extinctions: "
         f"{total('extinctions'):,}{risen}",
-        f"    {_share(worlds, 'fixation', 'with one common ancestor')}",
+        f"    {_share(worlds, 'fixation', 'descend from one child of a founder')}",
         f"    {_share(worlds, 'saturation', 'saturated')}",
         *_act(worlds),
         *_traits(worlds),

@@ -90,8 +90,8 @@ def _one_world(worlds: list[dict[str, Any]], run: Records, rate: float | None) -
     ]
     if fixed := world["fixation"]:
         parts.append(
-            f"Since tick {fixed['tick']:,} (birth {fixed['births']:,}) all living organisms descend"
-            " from one ancestor."
+            f"Since tick {fixed['tick']:,} ({fixed['births']:,} births until then) all living organisms"
+            " descend from one child of a founder."
         )
     if saturated := world["saturation"]:
         parts.append(

@@ -53,7 +53,13 @@ def threshold(name: str, found: list[Any]) -> Told:
     rows = [(text, spread(getattr(each, field) for each in found)) for field, text in words.items()]
     above = f"{sum(value > 1 for value in held)} of {len(held)}"
     last = ("worlds where it is above 1: a good line persists", above)
-    return Told(_title(name, found), ("", "median"), [*rows, last])
+    notes = []
+    if found and all(each.mutated == 1 for each in found):
+        notes.append(
+            "Every child mutates, so there are no copies to compare mutants with. Set"
+            " mutation.probability below 1 in a new run."
+        )
+    return Told(_title(name, found), ("", "median"), [*rows, last], notes)
 
 
 def effects(name: str, found: list[Any]) -> Told:
