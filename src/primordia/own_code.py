@@ -48,6 +48,14 @@ class Source(NamedTuple):
         """The checksum of the text."""
         return hashlib.sha256(self.text).hexdigest()
 
+    @property
+    def knows_its_place(self) -> bool:
+        """Whether the code asks where its file is (`__file__`), presumably to read files beside it."""
+        return any(
+            isinstance(node, ast.Name) and node.id == "__file__"
+            for node in ast.walk(_tree(self.text))
+        )
+
 
 Sources = dict[str, Source]
 """Files by their path below the root folder of their imports, such as `a/b.py`."""
@@ -273,18 +281,22 @@ def _files(module: str, root: Path) -> Iterator[tuple[str, Path]]:
                 break
 
 
+def _tree(text: bytes) -> ast.AST:
+    """Return the syntax tree of a file; an empty one if there is none, as the import will report."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return ast.parse(text)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return ast.Module([], [])
+
+
 @cache
 def _imports(text: bytes, name: str) -> frozenset[str]:
     """Return the names of modules that a file may import; some may be names of functions or classes."""
     package = name.removesuffix(".py").split("/")[:-1]
     imported: set[str] = set()
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            tree = ast.parse(text)
-    except (SyntaxError, ValueError, RecursionError, MemoryError):  # the import will report it
-        return frozenset()
-    for node in ast.walk(tree):
+    for node in ast.walk(_tree(text)):
         if isinstance(node, ast.Import):
             imported |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):

@@ -58,6 +58,23 @@ def test_a_run_does_not_go_on_with_changed_code(folder: Path) -> None:
     assert not primordia.load(run).info()["exact"]
 
 
+@pytest.mark.parametrize(
+    ("place", "refused"),
+    [("DEPTH, HERE = 3.0, __file__", True), ("DEPTH = 3.0  # not __file__", False)],
+)
+def test_code_that_looks_for_files_beside_it_is_refused(
+    folder: Path, place: str, refused: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its copy has none, so that a run could not be resumed."""
+    (folder / "pond_depth.py").write_text(f"{place}\n")
+    if refused:
+        complains(here("run", folder / "task.toml", "--out", "run"), 2, "pond_depth.py", "__file__")
+        assert not (folder / "run").exists()
+    else:
+        monkeypatch.setattr("primordia.runs.loop.drive", lambda *_: None)
+        assert primordia.run(str(folder / "task.toml"), folder / "run").path.exists()
+
+
 LOCALE = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
 
 

@@ -57,10 +57,17 @@ def copy(config: Config, run: Path) -> dict[str, str]:
     """Copy the user's own code into a new run, and trust it. Return each file's SHA-256 by name.
 
     Raises:
+        InputError: the code looks for files beside it; the copy would have none.
         Trouble: a file cannot be written.
     """
     code = found(config)
     for name, source in code.files.items():
+        if source.knows_its_place:
+            raise InputError(
+                f"{source.file} asks for its own place (`__file__`), but a run executes a copy of it"
+                " without the files beside it; install it as a package (pip install .), or let a"
+                " setting of the habitat name the file that it reads"
+            )
         path = run / FOLDER / name
         files.make_folder(path.parent)
         files.write_bytes(path, source.text)
