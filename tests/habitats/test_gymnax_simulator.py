@@ -150,6 +150,13 @@ def test_no_array_of_a_state_changes_its_shape(place: int) -> None:
         Simulator(Changing(born, later), None, False).reset(jnp.zeros(2, jnp.uint32))
 
 
+def test_a_state_with_a_key_of_the_new_kind_is_refused() -> None:
+    """Its bits are no array that a checkpoint could hold."""
+    states = [jnp.zeros(2), jax.random.key(0)]
+    with pytest.raises(ValueError, match=r"^env: .* make it with jax\.random\.PRNGKey$"):
+        Simulator(Changing(states, states), None, False).reset(jnp.zeros(2, jnp.uint32))
+
+
 def test_a_number_has_a_type_that_holds_its_values_at_birth_and_later() -> None:
     key = jnp.zeros(2, jnp.uint32)
     born, later = [jnp.int32(3), jnp.float32(0.5)], [jnp.float32(2.5), jnp.int32(4)]

@@ -129,6 +129,14 @@ def test_all_that_a_habitat_lacks_for_pictures_is_named(
         replay.picture_rate(life)
 
 
+def test_a_picture_that_is_none_is_refused() -> None:
+    habitat = SimpleNamespace(picture=lambda body, action: np.zeros((4, 4)))
+    life: Any = SimpleNamespace(habitat=habitat)
+    stretch: Any = SimpleNamespace(tick=[7], bodies=np.zeros((1, 2)), action=[0])
+    with pytest.raises(InputError, match=r"`picture` returns ndarray; return a PIL\.Image\.Image"):
+        replay.picture_of(life, stretch, 0)
+
+
 @pytest.mark.parametrize(
     ("name", "rate", "step"),
     [("a.mp4", 60, 1), ("a.mp4", 61, 2), ("a.gif", 25, 1), ("a.gif", 50, 2), ("a.gif", 60, 3)],

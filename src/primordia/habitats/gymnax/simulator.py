@@ -139,6 +139,10 @@ class Simulator:
             a.shape != b.shape for a, b in zip(*map(jax.tree.leaves, (born, later)), strict=True)
         ):
             raise ValueError("env: the state has one form after a reset and another after a step")
+        if any(jnp.issubdtype(each.dtype, jax.dtypes.extended) for each in jax.tree.leaves(born)):
+            raise ValueError(
+                "env: the state holds a key of jax.random.key; make it with jax.random.PRNGKey"
+            )
         return jax.tree.map(
             lambda a, b: jax.ShapeDtypeStruct(a.shape, jnp.promote_types(a.dtype, b.dtype)),
             born,

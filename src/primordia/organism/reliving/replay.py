@@ -237,6 +237,10 @@ def picture_of(life: RelivedLife, stretch: Stretch, i: int, run: str = "") -> Im
     tick = int(stretch.tick[i])
     body = jax.tree.map(lambda leaf: leaf[i], stretch.bodies)
     picture = life.habitat.picture(body, stretch.action[i])
+    if not isinstance(picture, Image.Image):
+        raise InputError(
+            f"the habitat's `picture` returns {type(picture).__name__}; return a PIL.Image.Image"
+        )
     words = [
         *([run] if run else []),
         f"organism {life.record.id[0]}",
