@@ -57,7 +57,7 @@ from primordia.settings.tables import (
     replaced,
     with_full_paths,
 )
-from primordia.settings.values import check_values
+from primordia.settings.values import check_values, plain
 
 CONTRACTS: dict[str, Any] = {"habitat": habitats, "brain": brains, "mutation": mutations}
 """Name of a replaceable part's table -> the module with the contract of that part."""
@@ -302,7 +302,7 @@ def parsed(values: dict[str, Any], source: str, others: Callable[[], list[str]] 
         InputError: a value is wrong; the message, one line, names the setting and the source.
     """
     try:
-        check_values(values)
+        check_values(values := plain(values))
         return Config.model_validate(replaced(values, NONE, None))
     except ValidationError as error:
         raise refusal(source, first_fault(error, Config, others=others())) from None

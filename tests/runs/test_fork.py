@@ -220,7 +220,10 @@ def test_wrong_input_is_an_error_that_says_why(mill: Path, tmp_path: Path) -> No
     complains(here("fork", mill), 2, "--at")
     complains(here("fork", mill, "--at", 5, "--out", mill), 2, "exists already")
     complains(here("fork", mill, "--at", 5, "--task", "mine"), 2, "remove the setting 'task'")
-    fork = primordia.load(mill).fork(5, tmp_path / "fork", stop={"ticks": 6})
+    with pytest.raises(TypeError, match="integer"):
+        primordia.load(mill).fork(5.5)
+    stop = {"ticks": np.int64(6)}
+    fork = primordia.load(mill).fork(np.int64(5), tmp_path / "fork", stop=stop)
     done = here("run", fork.path / "config.toml", "--out", tmp_path / "again")
     complains(done, 2, "these are the settings of a fork")
     for folder in ("origin", "checkpoints"):  # as if it was killed before its origin was written

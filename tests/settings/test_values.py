@@ -28,6 +28,26 @@ def nested(value: Any, depth: int, wrap: Callable[[Any], Any]) -> Any:
     return value
 
 
+def test_numbers_of_numpy_are_settings_like_those_of_python() -> None:
+    """Sweeps in Python often go over arrays."""
+    ours = {
+        "seed": 3,
+        "hazard": 0.25,
+        "mutation": {"scale": 0.5, "density": 0.125},
+        "stop": {"ticks": 9},
+    }
+    theirs = {
+        "seed": np.int64(3),
+        "hazard": np.float32(0.25),
+        "mutation": {"scale": np.float64(0.5), "density": np.float32(0.125)},
+        "stop": {"ticks": np.uint8(9)},
+    }
+    assert load(TASK, theirs) == load(TASK, ours)
+    assert load(TASK, theirs).to_toml() == load(TASK, ours).to_toml()
+    with pytest.raises(InputError, match="is not a finite number"):
+        load(TASK, {"mutation": {"scale": np.float32(math.inf)}})
+
+
 @pytest.mark.parametrize("wrap", [lambda value: {"a": value}, lambda value: [value]])
 def test_tables_and_lists_are_nested_only_so_deep(wrap: Callable[[Any], Any]) -> None:
     check_values(nested(1, DEEPEST + 1, wrap))  # the outermost table is that of all settings

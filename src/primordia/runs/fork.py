@@ -5,6 +5,7 @@ checkpoint. Its records begin with the births of the organisms alive at that tic
 """
 
 import time
+from operator import index
 from pathlib import Path
 from typing import Any
 
@@ -61,6 +62,7 @@ def fork(
         InputError: no such tick, a setting that cannot change in a living world, or `out` is taken.
         Trouble: a file cannot be written, or the source does not repeat as recorded.
     """
+    at = index(at)
     _check_tick(source, at)
     source.admit()
     changed = _fork_config(source, settings, at)

@@ -8,6 +8,7 @@ from primordia.errors import InputError
 from primordia.settings.base import UNREACHED, Settings
 from primordia.settings.fields import first_fault
 from primordia.settings.tables import NONE, replaced
+from primordia.settings.values import plain
 
 
 class Stop(Settings):
@@ -36,7 +37,7 @@ def checked(values: dict[str, Any]) -> dict[str, Any]:
     Raises:
         InputError: a setting is unknown or out of range.
     """
-    values = replaced(values, NONE, None)
+    values = replaced(plain(values), NONE, None)
     try:
         Stop.model_validate(values)
     except ValidationError as error:

@@ -4,6 +4,8 @@ import math
 import re
 from typing import Any
 
+import numpy as np
+
 from primordia.errors import InputError
 
 DEEPEST = 16
@@ -14,6 +16,15 @@ UNWRITABLE = re.compile("[\0\ud800-\udfff]")
 """Characters that UTF-8 or TOML cannot hold: NUL, and halves of surrogate pairs."""
 SHOWN = 100
 """Largest number of characters of a value in a message."""
+
+
+def plain(values: Any) -> Any:
+    """Return nested tables and lists with Python's numbers in place of NumPy's."""
+    if isinstance(values, dict):
+        return {name: plain(value) for name, value in values.items()}
+    if isinstance(values, list | tuple):
+        return [plain(value) for value in values]
+    return values.item() if isinstance(values, np.generic) else values
 
 
 def check_values(values: Any, path: str = "", depth: int = 0) -> None:
