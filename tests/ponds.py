@@ -1,6 +1,7 @@
 """Gymnasium environments for tests: one of odd spaces, and one for each thing that can be wrong."""
 
 import os
+import random
 from itertools import count
 from typing import Any
 
@@ -99,6 +100,18 @@ class Hidden(Pond):
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict]:
         self.place[1] += 1e-9 * next(NUMBERS)
+        return super().step(action)
+
+
+class Shared(Pond):
+    """A generator that all ponds share; each reset seeds it, so one pond alone repeats its lives."""
+
+    def reset(self, *, seed: int | None = None, options: Any = None) -> tuple[Any, dict]:
+        random.seed(seed)
+        return super().reset(seed=seed)
+
+    def step(self, action: Any) -> tuple[Any, float, bool, bool, dict]:
+        self.place[1] += 1e-9 * random.random()
         return super().step(action)
 
 
@@ -222,7 +235,7 @@ def food(observation: Any, reward: Any, terminated: Any, truncated: Any, info: A
 
 
 KINDS = (
-    Pond, Odd, Unseeded, Hidden, Worn, Grasping, Outside, Broken, Crashing, Spoiled, Splashing,
+    Pond, Odd, Unseeded, Hidden, Shared, Worn, Grasping, Outside, Broken, Crashing, Spoiled, Splashing,
     Unborn, Talking, Still, Closed, Sealed,
 )  # fmt: skip
 for kind in KINDS:

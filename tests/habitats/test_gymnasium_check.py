@@ -17,6 +17,7 @@ from tests.ponds import Pond
 FAULTS = {
     "Unseeded": ("restart", False, "another beginning: the environment ignores its seed"),
     "Hidden": ("restart", False, "the same seed and actions give another life"),
+    "Shared": ("restart", False, "draws random numbers from outside (such as np.random"),
     "Worn": ("snapshot", True, "reset does not restore everything"),
     "Grasping": ("snapshot", False, "step changes the action"),
     "Outside": ("snapshot", False, "outside the declared space"),

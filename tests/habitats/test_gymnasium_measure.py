@@ -32,10 +32,8 @@ def test_lives_that_do_not_end_share_the_ticks_and_each_has_its_own_seed(
     found = measure("tests.ponds:Pond-v0", {"edge": 1e9})
     assert (found.lifespan, found.ended) == (10, 0)
     assert seeds[:LIVES] == [1, 3, 5, 7, 9, 11, 13, 15]
-    assert set(seeds) == {
-        0,
-        *seeds[:LIVES],
-    }  # environments are reset with 0 before they are restored
+    beside = {seed + 1 for seed in seeds[:LIVES]}
+    assert set(seeds) == {0, *seeds[:LIVES], *beside}  # 0: before a state is restored
 
 
 def test_random_actions_cover_the_whole_space(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -104,11 +102,12 @@ LIVED = {0: [b"a", b"b"], 1: [b"c", b"d"]}
 def test_one_life_that_does_not_repeat_is_enough(
     change: dict[Any, Any], saving: str, fresh: bool, says: list[str]
 ) -> None:
-    """Each life is repeated three times: in a used environment, and twice in new environments."""
+    """Each life is repeated in a used environment, in a new one, and in a new one beside another life."""
     trial: Any = object.__new__(_Trial)
     made, repeated = iter(["used", *["new"] * 2, *["twice"] * 2]), list[Any]()
 
-    def live(env: str, life: _Life) -> list[bytes]:
+    def live(env: str, life: _Life, beside: str | None = None) -> list[bytes]:
+        assert beside == ("used" if env == "twice" else None)
         repeated.append((env, life.seed))
         return change.get((env, life.seed), LIVED[life.seed])
 

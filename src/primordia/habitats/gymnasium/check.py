@@ -95,10 +95,17 @@ class _Trial:
             at += part.size
         return self._acting.rows(np.concatenate(columns, axis=1))
 
-    def live(self, env: Env, life: _Life, watched: bool = False) -> list[bytes]:
-        """Live a life to its end, or to an error. Return the record of each age."""
+    def live(
+        self, env: Env, life: _Life, watched: bool = False, beside: Env | None = None
+    ) -> list[bytes]:
+        """Live a life to its end, or to an error. Return the record of each age.
+
+        In the environment `beside` another life begins between the birth and the first step.
+        """
         try:
             observation, _ = env.reset(seed=life.seed)
+            if beside is not None:
+                beside.reset(seed=life.seed + 1)
         except (Exception, SystemExit) as error:
             self._note(f"reset raises an error: {environment.line(error)}")
             return [ENDED]
@@ -175,18 +182,19 @@ def measure(env: str, options: Mapping[str, Any]) -> Measured:
 
 
 def _repeat(trial: _Trial, lives: list[_Life], found: Measured) -> None:
-    """Live the lives again, in new environments and in a used one."""
+    """Live the lives again: in a used environment, in new ones, and in new ones beside another life."""
     used, again, new = trial.new(), [], []
     for life in reversed(lives):
         again.append(trial.live(used, life) == life.seen)
         new.append(trial.live(trial.new(), life))
-    twice = [trial.live(trial.new(), life) for life in reversed(lives)]
+    twice = [trial.live(trial.new(), life, beside=used) for life in reversed(lives)]
     if new != twice:
         begins = all(a[0] == b[0] for a, b in zip(new, twice, strict=True))
         found.saving = "restart"
         found.faults.append(
             "the same seed and actions give another life: the environment draws random numbers from"
-            " outside, or keeps something from an earlier environment"
+            " outside (such as np.random; use self.np_random), or shares something with another"
+            " environment"
             if begins
             else "a reset with the same seed gives another beginning: the environment "
             "ignores its seed, or keeps something from an earlier environment"
