@@ -10,7 +10,7 @@ pytest.importorskip("gymnasium")
 from primordia.habitats.gymnasium import check, state
 from primordia.habitats.gymnasium.check import LIVES, measure
 from primordia.habitats.gymnasium.environment import make
-from primordia.habitats.gymnasium.probe import check_food
+from primordia.habitats.gymnasium.probe import check_food, info_of
 from tests import ponds
 from tests.ponds import Pond
 
@@ -176,3 +176,13 @@ def test_a_restored_environment_has_the_state_that_was_saved(name: str) -> None:
         saver: Any = one.unwrapped
         for field in ("time", "ctrl", "qpos", "qvel", "qacc_warmstart"):
             np.testing.assert_array_equal(getattr(inner.data, field), getattr(saver.data, field))
+
+
+def test_values_of_info_have_names_that_settings_can_write(monkeypatch: pytest.MonkeyPatch) -> None:
+    reset = Pond.reset
+
+    def begin(self: Pond, **given: Any) -> Any:
+        return reset(self, **given)[0], {7: 1.0, ("a", "b"): 2, "depth": 3.0}
+
+    monkeypatch.setattr(Pond, "reset", begin)
+    assert info_of("tests.ponds:Pond-v0", {"edge": 2.75}) == {"age": 0, "depth": 0}

@@ -111,3 +111,12 @@ def test_an_object_with_a_state_beside_its_attributes_is_not_saved(part: Any) ->
     says = rf"^env\.parts\[1\] is a {type(part).__name__}, which cannot be saved$"
     with pytest.raises(state.UnknownStateError, match=says):
         state.encode(thing)
+
+
+def test_a_state_that_is_nested_too_deeply_is_not_saved() -> None:
+    """Such as a linked list, or a tree of nodes."""
+    thing = Thing(3)
+    for _ in range(5000):
+        thing.plain = [thing.plain]
+    with pytest.raises(state.UnknownStateError, match="nested too deeply"):
+        state.encode(thing)

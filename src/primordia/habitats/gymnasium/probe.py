@@ -113,11 +113,10 @@ def random_play(env: str, options: Mapping[str, Any]) -> list[tuple[np.ndarray, 
 def _numbers(info: Mapping[str, Any]) -> dict[str, int]:
     sizes = {}
     for key, value in info.items():
-        array = (
-            np.asarray(value) if isinstance(value, int | float | np.generic | np.ndarray) else None
-        )
-        if array is not None and array.dtype.kind in "biuf" and array.size <= LONGEST:
-            sizes[key] = array.size if array.ndim else 0
+        if isinstance(key, str) and isinstance(value, int | float | np.generic | np.ndarray):
+            array = np.asarray(value)
+            if array.dtype.kind in "biuf" and array.size <= LONGEST:
+                sizes[key] = array.size if array.ndim else 0
     return sizes
 
 

@@ -41,7 +41,11 @@ def encode(env: object) -> bytes:
     Raises:
         UnknownStateError: a part of the state cannot be stored.
     """
-    return zlib.compress(json.dumps(_Writer().write(env, "env")).encode(), level=1)
+    try:
+        written = json.dumps(_Writer().write(env, "env"))
+    except RecursionError:
+        raise UnknownStateError("the state is nested too deeply to be saved") from None
+    return zlib.compress(written.encode(), level=1)
 
 
 def decode(env: object, state: bytes) -> None:
