@@ -135,6 +135,13 @@ def unequal() -> list[dict[str, Any]]:
     ]  # fmt: skip
 
 
+def test_faults_are_explained() -> None:
+    """They are the user's own: of a habitat or a brain."""
+    faulty = [world(deaths_by_cause={"fatal": 1, "fault": each}) for each in (3, 0, 4)]
+    assert "  7 organisms died of a fault: a number was not finite, or" in summarised(faulty)
+    assert "died of a fault" not in summarised(faulty[1:2])
+
+
 def test_five_unequal_worlds_are_summarised_together() -> None:
     assert summarised(unequal()).splitlines() == [
         "T: 5 worlds of 8 cells",

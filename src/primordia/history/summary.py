@@ -28,6 +28,11 @@ def summary(info: dict[str, Any]) -> str:
             lines += _one_world(world)
     else:
         lines += _all_worlds(worlds)
+    if faults := sum(world["deaths_by_cause"].get("fault", 0) for world in worlds):
+        lines.append(
+            f"  {counted(faults, 'organism')} died of a fault: a number was not finite, or the habitat"
+            " raised an error, which faults.txt names"
+        )
     if not info["exact"]:
         lines.append("  not exact: parts of this run cannot be repeated bit for bit")
     lines += [
