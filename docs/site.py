@@ -18,6 +18,7 @@ from pathlib import Path
 ROOT = Path(__file__).parent.parent
 PAGES, SITE = ROOT / "build" / "pages", ROOT / "build" / "site"
 BEGIN = ("README.md", "CONTRIBUTING.md", "SECURITY.md", "CHANGELOG.md", "docs")
+STYLE = ROOT / "docs" / "tables.css"
 LINK = re.compile(
     r"\[(?P<text>[^\[\]]*)\]\((?P<target>[^()#:\s]+)(?:#[^()]*)?\)|src=\"(?P<image>[^\":]+)\""
 )
@@ -27,7 +28,7 @@ LOADS = re.compile(r"<(?!a\b)[^<>]*\b(?:src|href)=[\"']?(?:https?:)?//[^<>]*>")
 
 def sources() -> set[Path]:
     """Return all files of the site: the pages, and what they link to."""
-    found: set[Path] = set()
+    found = {STYLE}
     left = [page for name in BEGIN for page in _pages(ROOT / name)]
     while left:
         file = left.pop()
