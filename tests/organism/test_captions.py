@@ -19,7 +19,9 @@ def test_a_caption_counts_the_age_from_the_birth_wherever_the_film_begins(
     """The film begins with the birth, or later with a fork or a checkpoint."""
     written: list[tuple[str, ...]] = []
     monkeypatch.setattr(replay, "_captioned", lambda picture, *words: written.append(words))
-    habitat = SimpleNamespace(picture=lambda *given: None, caption=lambda *given: "push")
+    habitat = SimpleNamespace(
+        picture=lambda *given: Image.new("RGB", (1, 1)), caption=lambda *given: "push"
+    )
     ticks = np.array([1301, 2570])
     stretch: Any = SimpleNamespace(tick=ticks, bodies=ticks, action=ticks, energy=ticks)
     for begins, island in ((70, ""), (1300, "dune")):
@@ -52,7 +54,9 @@ def test_a_caption_shows_the_energy_and_in_the_last_tick_the_cause_of_death(
         begins=70,
         ends=100,
         cause=cause,
-        habitat=SimpleNamespace(picture=lambda *given: None, caption=lambda *given: ""),
+        habitat=SimpleNamespace(
+            picture=lambda *given: Image.new("RGB", (1, 1)), caption=lambda *given: ""
+        ),
         law=SimpleNamespace(metabolism="a metabolism"),
     )
     ticks = np.array([98, 99, 100])
