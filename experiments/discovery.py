@@ -3,8 +3,8 @@
     python experiments/discovery.py experiments/learning/baldwin.toml
     python experiments/discovery.py --ticks 7141 experiments/skill/boxing-alike.toml
 
-The experiment must have been run (`primordia experiment`). A life is long if it has `saturation_ticks`, or
-`--ticks`. The table goes to `results/` beside the file, as Markdown and CSV.
+The experiment must have been run (`primordia experiment`). A life is long if it has `--ticks`, which are
+the `saturation_ticks` by default. The table goes to `results/` beside the file, as Markdown and CSV.
 """
 
 import argparse
