@@ -5,12 +5,14 @@ from types import SimpleNamespace
 from typing import Any
 from unittest.mock import MagicMock, call, patch
 
+import numpy as np
 import pytest
 
 import primordia
 from primordia import api
 from primordia.comparison import comparison
 from primordia.errors import InputError
+from primordia.organism.organism import Organism
 from primordia.runs import opening
 
 RUN, OUT, MORE = Path("RUN"), Path("OUT"), Path("MORE")
@@ -151,9 +153,30 @@ def test_an_experiment_that_is_stopped_raises_a_keyboard_interrupt() -> None:
     place.assert_called_once_with(OUT, 1, None, None, 60.0, "cpu")
 
 
+def test_organisms_are_named_by_themselves_or_by_their_birth_number() -> None:
+    run = MagicMock(paths=(RUN,), path=RUN)
+    ours, far = (MagicMock(spec=Organism, run=run, id=12, world=world) for world in (0, 2))
+    with (
+        patch.object(opening, "opened", return_value=run),
+        patch("primordia.api.runs.evaluate") as evaluate,
+        patch("primordia.api.runs.export") as export,
+    ):
+        primordia.Run(RUN).evaluate([ours, np.int64(7), far], games=3)
+        primordia.Run(RUN).export("OUT", far, far)
+        primordia.Run(RUN).export("OUT", 7, world=1)
+        with pytest.raises(InputError, match="organisms of one world"):
+            primordia.Run(RUN).export("OUT", ours, far)
+    evaluate.assert_called_once_with(run, [(12, 0), (7, 0), (12, 2)], games=3)
+    assert [each.args for each in export.mock_calls] == [
+        (run, OUT, (12, 12), 2),
+        (run, OUT, (7,), 1),
+    ]
+    assert run.lives.row.mock_calls == [call(7, 0), call(7, 1)], "so that an unborn one is refused"
+
+
 def test_organisms_of_another_run_are_refused() -> None:
     own, other = (MagicMock(paths=(path,), path=path) for path in (RUN, MORE))
-    organism = MagicMock(run=other, id=12, world=0)
+    organism = MagicMock(spec=Organism, run=other, id=12, world=0)
     run = primordia.Run(RUN)
     for asked in (run.evaluate, run.ablate):
         with (

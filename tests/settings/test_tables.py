@@ -185,6 +185,7 @@ def test_a_fault_in_a_file_names_the_file_and_the_setting(tmp_path: Path) -> Non
         ("a.dept", ["a.depth", "b.breadth"], "a.depth"),
         (f"{'x' * 30}.deepth", ["pond.depth", "lake.depth"], "pond.depth"),
         (f"{'x' * 30}.deepth", ["lake.depth", "pond.depth"], "lake.depth"),
+        ("pong", ["Boxing-survival", "Pong-survival", "Pong-survival-forager"], "Pong-survival"),
         ("cells", ["hazard", "seed"], ""),
         ("cells", [], ""),
     ],

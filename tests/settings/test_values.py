@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from primordia.config import Config, load
 from primordia.errors import InputError
 from primordia.settings.tables import tasks
-from primordia.settings.values import DEEPEST, LARGEST, SHOWN, check_values, shown
+from primordia.settings.values import DEEPEST, LARGEST, SHOWN, check_values, plain, shown
 from tests.commands import complains, here
 
 TASK = "CartPole-survival"
@@ -28,7 +28,7 @@ def nested(value: Any, depth: int, wrap: Callable[[Any], Any]) -> Any:
     return value
 
 
-def test_numbers_of_numpy_are_settings_like_those_of_python() -> None:
+def test_numbers_of_numpy_and_paths_are_settings_like_those_of_python() -> None:
     """Sweeps in Python often go over arrays."""
     ours = {
         "seed": 3,
@@ -44,6 +44,10 @@ def test_numbers_of_numpy_are_settings_like_those_of_python() -> None:
     }
     assert load(TASK, theirs) == load(TASK, ours)
     assert load(TASK, theirs).to_toml() == load(TASK, ours).to_toml()
+    assert plain({"file": Path("a") / "b", "files": (Path("c"),)}) == {
+        "file": "a/b",
+        "files": ["c"],
+    }
     with pytest.raises(InputError, match="is not a finite number"):
         load(TASK, {"mutation": {"scale": np.float32(math.inf)}})
 

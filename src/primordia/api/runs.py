@@ -22,7 +22,7 @@ from primordia.history.islands import OnIsland, champions, oldest, on_islands
 from primordia.history.summary import summary
 from primordia.history.threshold import Threshold, threshold
 from primordia.organism.export import export
-from primordia.organism.organism import Organism
+from primordia.organism.organism import Organism, numbers_of
 from primordia.organism.playing.evaluation import Evaluation, evaluate
 from primordia.organism.policy import Policy
 from primordia.phylogeny import formats
@@ -129,10 +129,13 @@ class Run:
         islands gives []."""
         return on_islands(self.opened())
 
-    def evaluate(self, organisms: Iterable[Organism], **options: Any) -> list[Evaluation]:
-        """Let organisms play games side by side; see `evaluation.evaluate`."""
+    def evaluate(self, organisms: Iterable[Organism | int], **options: Any) -> list[Evaluation]:
+        """Let organisms play games side by side; see `evaluation.evaluate`.
+
+        A birth number stands for an organism of world 0.
+        """
         run = self.opened()
-        return evaluate(run, _numbers(run, organisms), **options)
+        return evaluate(run, numbers_of(run, organisms), **options)
 
     def standings(
         self,
@@ -159,11 +162,11 @@ class Run:
         """Let organisms and their unselected shadows live again; see `shadow.shadow`."""
         return shadow(self.opened(), organisms, ticks, island)
 
-    def ablate(self, organisms: Iterable[Organism] = (), **options: Any) -> list[Ablation]:
+    def ablate(self, organisms: Iterable[Organism | int] = (), **options: Any) -> list[Ablation]:
         """Let organisms, by default the champions, play games without their learning, their memory,
         their senses or some of their weights; see `ablate.ablate`."""
         run = self.opened()
-        own = _numbers(run, organisms)
+        own = numbers_of(run, organisms)
         with devices.selected(None, run.made_on):
             return ablate(of_run(run, own), **options)
 
@@ -199,9 +202,15 @@ class Run:
         """Return the brain of the run's `oldest` organism as a function `policy(senses) -> action`."""
         return self.oldest().policy()
 
-    def export(self, out: str | Path, *organisms: int, world: int = 0) -> tuple[int, ...]:
+    def export(
+        self, out: str | Path, *organisms: Organism | int, world: int = 0
+    ) -> tuple[int, ...]:
         """Write the genomes of some organisms of one world to a safetensors file; see `export.export`."""
-        return export(self.opened(), Path(out), organisms, world)
+        chosen = numbers_of(self.opened(), organisms, world)
+        worlds = {own for _, own in chosen} or {world}
+        if len(worlds) > 1:
+            raise InputError("export takes organisms of one world; call it once for each world")
+        return export(self.opened(), Path(out), tuple(number for number, _ in chosen), worlds.pop())
 
     def phylogeny(
         self,
@@ -314,20 +323,6 @@ class Run:
         """Repeat the run and return the differences; see `verify.verify` and, for `device`, `resume`."""
         with devices.selected(device, self.only().made_on):
             return verify(self.only(), listen)
-
-
-def _numbers(run: Records, organisms: Iterable[Organism]) -> list[tuple[int, int]]:
-    """Return birth number and world of each organism.
-
-    Raises:
-        InputError: an organism is one of another run.
-    """
-    found, here = [], [path.resolve() for path in run.paths]
-    for each in organisms:
-        if [path.resolve() for path in each.run.paths] != here:
-            raise InputError(f"organism {each.id} is one of {each.run.path}, and not of {run.path}")
-        found.append((each.id, each.world))
-    return found
 
 
 def fresh_directory(name: str) -> Path:

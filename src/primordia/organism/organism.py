@@ -1,12 +1,14 @@
 """One organism of a run: its record, and all that can be derived from the record."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from operator import index
 from pathlib import Path
-from typing import Any
+from typing import Any, SupportsIndex
 
 import numpy as np
 
+from primordia.errors import InputError
 from primordia.history import pedigree
 from primordia.history.islands import names_of
 from primordia.history.rebuilding import descent
@@ -132,3 +134,23 @@ class Organism:
         """Live the organism's life again and compare it with the record; see `compare.relive`."""
         save, film = (None if each is None else Path(each) for each in (save, film))
         return relive(self.run, self.id, self.world, since=since, save=save, film=film)
+
+
+def numbers_of(
+    run: Records, organisms: Iterable[Organism | int], world: int = 0
+) -> list[tuple[int, int]]:
+    """Return birth number and world of each organism; birth numbers are those of the given world.
+
+    Raises:
+        InputError: an organism is one of another run, or was not born.
+    """
+    found, here = [], [path.resolve() for path in run.paths]
+    for each in organisms:
+        if isinstance(each, SupportsIndex):
+            run.lives.row(index(each), world)  # raises if it was not born
+            found.append((index(each), world))
+        elif [path.resolve() for path in each.run.paths] == here:
+            found.append((each.id, each.world))
+        else:
+            raise InputError(f"organism {each.id} is one of {each.run.path}, and not of {run.path}")
+    return found

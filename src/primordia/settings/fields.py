@@ -96,5 +96,5 @@ def first_fault(
         return f"{path} is missing{more}"
     if fault["type"] == "value_error":  # an error of our validators, whose message is complete
         return f"{path}: {fault['ctx']['error']}{more}".removeprefix(": ")
-    message = fault["msg"][0].lower() + fault["msg"][1:]
+    message = fault["msg"][0].lower() + fault["msg"][1:].replace("tuple", "list")
     return f"{path}: {message}, not {shown(fault['input'])}{more}"

@@ -66,10 +66,10 @@ def layers_of(task: str) -> tuple[dict[str, Any], dict[str, Any]]:
         if name not in known and "habitat" not in values and (near := did_you_mean(name, [*known])):
             raise InputError(f"{task}: there is no task {name!r}{near}")
         return deepcopy(known.get(name, {})), values
-    raise InputError(
-        f"there is no task {task!r}{did_you_mean(task, list(known))}; give a name that `primordia"
-        " tasks` lists, a file FILE.toml, or an environment gym:NAME"
+    lists = (
+        "; give a name that `primordia tasks` lists, a file FILE.toml, or an environment gym:NAME"
     )
+    raise InputError(f"there is no task {task!r}{did_you_mean(task, list(known)) or lists}")
 
 
 def from_toml(path: Path) -> dict[str, Any]:
@@ -210,10 +210,11 @@ def flat(values: dict[str, Any], prefix: str = "") -> dict[str, Any]:
 def did_you_mean(name: str, known: list[str]) -> str:
     """Return the nearest known name as the end of a sentence; "" if none is near.
 
-    If no whole name is near, the last parts of dotted names are compared.
+    If no whole name is near, the last parts of dotted names are compared, then the beginnings of names.
     """
     of_last = {path.rpartition(".")[2]: path for path in reversed(known)}
     close = difflib.get_close_matches(name, known, 1) or [
         of_last[last] for last in difflib.get_close_matches(name.rpartition(".")[2], of_last, 1)
     ]
+    close = close or [each for each in known if each.casefold().startswith(name.casefold())]
     return f"; did you mean {close[0]!r}?" if close else ""

@@ -2,6 +2,7 @@
 
 import math
 import re
+from os import PathLike, fspath
 from typing import Any
 
 import numpy as np
@@ -19,11 +20,13 @@ SHOWN = 100
 
 
 def plain(values: Any) -> Any:
-    """Return nested tables and lists with Python's numbers in place of NumPy's."""
+    """Return nested tables and lists with Python's numbers in place of NumPy's, and texts for paths."""
     if isinstance(values, dict):
         return {name: plain(value) for name, value in values.items()}
     if isinstance(values, list | tuple):
         return [plain(value) for value in values]
+    if isinstance(values, PathLike):
+        return fspath(values)
     return values.item() if isinstance(values, np.generic) else values
 
 
