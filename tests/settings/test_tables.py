@@ -188,6 +188,7 @@ def test_a_fault_in_a_file_names_the_file_and_the_setting(tmp_path: Path) -> Non
         ("pong", ["Boxing-survival", "Pong-survival", "Pong-survival-forager"], "Pong-survival"),
         ("cells", ["hazard", "seed"], ""),
         ("cells", [], ""),
+        ("", ["cells"], ""),
     ],
 )
 def test_the_first_of_equally_near_names_is_suggested(

@@ -216,5 +216,6 @@ def did_you_mean(name: str, known: list[str]) -> str:
     close = difflib.get_close_matches(name, known, 1) or [
         of_last[last] for last in difflib.get_close_matches(name.rpartition(".")[2], of_last, 1)
     ]
-    close = close or [each for each in known if each.casefold().startswith(name.casefold())]
+    if name and not close:
+        close = [each for each in known if each.casefold().startswith(name.casefold())]
     return f"; did you mean {close[0]!r}?" if close else ""
