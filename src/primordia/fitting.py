@@ -146,6 +146,11 @@ def _check_season(setting: str, config: Any, law: Law) -> None:
 def _check_value(season: Schedule, config: Any) -> None:
     """Check whether a setting may have the value that it will have."""
     *tables, name = config.islands.split(season.setting)[1].split(".")
+    if (
+        tables == ["mutation"]
+        and name not in type(make("mutation", config.mutation, find)).model_fields
+    ):
+        return  # a rate of the user's own, which is no setting
     change: dict[str, Any] = {name: season.value}
     for table in reversed(tables):
         change = {table: change}

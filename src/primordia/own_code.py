@@ -50,10 +50,13 @@ class Source(NamedTuple):
 
     @property
     def knows_its_place(self) -> bool:
-        """Whether the code asks where its file is (`__file__`), presumably to read files beside it."""
+        """Whether the code, if it is imported, asks where its file is (`__file__`), presumably to read
+        files beside it."""
         return any(
             isinstance(node, ast.Name) and node.id == "__file__"
-            for node in ast.walk(_tree(self.text))
+            for part in ast.iter_child_nodes(_tree(self.text))
+            if not (isinstance(part, ast.If) and ast.unparse(part.test).startswith("__name__"))
+            for node in ast.walk(part)
         )
 
 

@@ -166,6 +166,11 @@ def test_organisms_are_named_by_themselves_or_by_their_birth_number() -> None:
         primordia.Run(RUN).export("OUT", 7, world=1)
         with pytest.raises(InputError, match="organisms of one world"):
             primordia.Run(RUN).export("OUT", ours, far)
+        with pytest.raises(InputError, match="organisms of one world"):
+            primordia.Run(RUN).export("OUT", far, world=1)
+        for none in (3.0, "3", (3, 1)):
+            with pytest.raises(InputError, match="neither an organism nor a birth number"):
+                primordia.Run(RUN).evaluate([none])
     evaluate.assert_called_once_with(run, [(12, 0), (7, 0), (12, 2)], games=3)
     assert [each.args for each in export.mock_calls] == [
         (run, OUT, (12, 12), 2),

@@ -60,7 +60,11 @@ def test_a_run_does_not_go_on_with_changed_code(folder: Path) -> None:
 
 @pytest.mark.parametrize(
     ("place", "refused"),
-    [("DEPTH, HERE = 3.0, __file__", True), ("DEPTH = 3.0  # not __file__", False)],
+    [
+        ("DEPTH, HERE = 3.0, __file__", True),
+        ("DEPTH = 3.0  # not __file__", False),
+        ("DEPTH = 3.0\nif __name__ == '__main__':\n    print(__file__)", False),
+    ],
 )
 def test_code_that_looks_for_files_beside_it_is_refused(
     folder: Path, place: str, refused: bool, monkeypatch: pytest.MonkeyPatch
@@ -73,6 +77,19 @@ def test_code_that_looks_for_files_beside_it_is_refused(
     else:
         monkeypatch.setattr("primordia.runs.loop.drive", lambda *_: None)
         assert primordia.run(str(folder / "task.toml"), folder / "run").path.exists()
+
+
+def test_a_run_that_was_begun_with_such_code_can_be_forked(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (folder / "pond_depth.py").write_text("DEPTH, HERE = 3.0, __file__\n")
+    with monkeypatch.context() as before:
+        before.setattr(own_code.Source, "knows_its_place", False)
+        run = begun(folder)
+    monkeypatch.chdir(folder.parent)
+    forget()
+    done = here("fork", run, "--at", 30, "--out", folder.parent / "fork", "--quiet", "--trust")
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 LOCALE = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}

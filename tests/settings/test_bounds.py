@@ -4,10 +4,12 @@ from typing import Any
 
 import pytest
 
+from primordia.brains.layout import Layout
 from primordia.config import parsed
 from primordia.errors import InputError
 from primordia.fitting import check
 from primordia.habitats.contract import Compound, Continuous, Discrete
+from primordia.mutations.gaussian import Gaussian
 from primordia.settings.limits import Stop, checked
 from tests.toys import Organ
 from tests.worlds import MEADOW, MILL, config, law_of
@@ -114,3 +116,16 @@ def test_a_schedule_sets_no_value_that_its_setting_may_not_have(setting: str, va
     with pytest.raises(InputError, match=f"seasons: {setting}: .* less than or equal to 1"):
         config(MILL, seasons=[season])
     assert config(MILL, seasons=[{**season, "value": 1.0}]).seasons
+
+
+class Warm(Gaussian):
+    """A mutation with a rate that is no setting."""
+
+    def rates(self, layout: Layout) -> dict[str, float]:
+        return {**super().rates(layout), "warmth": 0.1}
+
+
+def test_a_season_may_change_any_rate_of_an_own_mutation() -> None:
+    season = {"kind": "schedule", "setting": "mutation.warmth", "at": 5, "value": 7.0}
+    mutation = {"kind": f"{__name__}:Warm"}
+    assert config(MILL, mutation=mutation, seasons=[season]).seasons

@@ -55,8 +55,9 @@ def test_numbers_of_numpy_and_paths_are_settings_like_those_of_python() -> None:
 @pytest.mark.parametrize("wrap", [lambda value: {"a": value}, lambda value: [value]])
 def test_tables_and_lists_are_nested_only_so_deep(wrap: Callable[[Any], Any]) -> None:
     check_values(nested(1, DEEPEST + 1, wrap))  # the outermost table is that of all settings
-    with pytest.raises(InputError, match=f"nested more than {DEEPEST} levels deep"):
-        check_values(nested(1, DEEPEST + 2, wrap))
+    for depth in (DEEPEST + 2, 2000):
+        with pytest.raises(InputError, match=f"nested more than {DEEPEST} levels deep"):
+            check_values(plain(nested(1, depth, wrap)))
 
 
 @pytest.mark.parametrize(

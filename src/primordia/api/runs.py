@@ -208,7 +208,7 @@ class Run:
         """Write the genomes of some organisms of one world to a safetensors file; see `export.export`."""
         chosen = numbers_of(self.opened(), organisms, world)
         worlds = {own for _, own in chosen} or {world}
-        if len(worlds) > 1:
+        if len(worlds) > 1 or (world and worlds != {world}):
             raise InputError("export takes organisms of one world; call it once for each world")
         return export(self.opened(), Path(out), tuple(number for number, _ in chosen), worlds.pop())
 

@@ -31,7 +31,7 @@ class Beside(NamedTuple):
 def oldest(run: Records, lives: Lives, ticks: np.ndarray) -> Iterator[Beside]:
     """Yield a picture for each moment: the life of the oldest organism so far, from birth on.
 
-    The words name the tick at which it became the oldest, since an older one may have to wait; see LEAST.
+    The words name the tick at which it is first shown, since an older one may have to wait; see LEAST.
     There is no picture while the oldest lives on an island whose habitat draws none.
 
     Args:

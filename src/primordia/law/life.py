@@ -34,7 +34,7 @@ class Thought(NamedTuple):
     action: Array
     """int32 (N,) or float32 (N, K); see `habitats.contract.Action`"""
     faulty: Array
-    """bool (N,): an output of the brain is not finite"""
+    """bool (N,): an output of the brain, or the energy that it spends, is not finite"""
     spent: Array | None = None
     """float32 (N,): energy that thinking costs; None: it is free; see `Brain.spent`"""
     copying: Array | None = None

@@ -142,13 +142,15 @@ def numbers_of(
     """Return birth number and world of each organism; birth numbers are those of the given world.
 
     Raises:
-        InputError: an organism is one of another run, or was not born.
+        InputError: an organism is one of another run, or was not born, or is none.
     """
     found, here = [], [path.resolve() for path in run.paths]
     for each in organisms:
         if isinstance(each, SupportsIndex):
             run.lives.row(index(each), world)  # raises if it was not born
             found.append((index(each), world))
+        elif not hasattr(each, "run"):
+            raise InputError(f"{each!r} is neither an organism nor a birth number")
         elif [path.resolve() for path in each.run.paths] == here:
             found.append((each.id, each.world))
         else:

@@ -62,7 +62,9 @@ def copy(config: Config, run: Path) -> dict[str, str]:
     """
     code = found(config)
     for name, source in code.files.items():
-        if source.knows_its_place:
+        root = source.file.parents[name.count("/")]
+        of_run = root.name == FOLDER and (root.parent / "config.toml").exists()  # such as a fork's
+        if source.knows_its_place and not of_run:
             raise InputError(
                 f"{source.file} asks for its own place (`__file__`), but a run executes a copy of it"
                 " without the files beside it; install it as a package (pip install .), or let a"

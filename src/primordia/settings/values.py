@@ -19,12 +19,15 @@ SHOWN = 100
 """Largest number of characters of a value in a message."""
 
 
-def plain(values: Any) -> Any:
-    """Return nested tables and lists with Python's numbers in place of NumPy's, and texts for paths."""
-    if isinstance(values, dict):
-        return {name: plain(value) for name, value in values.items()}
-    if isinstance(values, list | tuple):
-        return [plain(value) for value in values]
+def plain(values: Any, depth: int = 0) -> Any:
+    """Return nested tables and lists with Python's numbers in place of NumPy's, and texts for paths.
+
+    What is nested too deeply stays as it is, for `check_values` to refuse.
+    """
+    if isinstance(values, dict) and depth <= DEEPEST:
+        return {name: plain(value, depth + 1) for name, value in values.items()}
+    if isinstance(values, list | tuple) and depth <= DEEPEST:
+        return [plain(value, depth + 1) for value in values]
     if isinstance(values, PathLike):
         return fspath(values)
     return values.item() if isinstance(values, np.generic) else values

@@ -24,6 +24,8 @@ CONTAINERS: dict[str, type] = {
     "list": list, "tuple": tuple, "set": set, "deque": deque, "dict": dict, "ordered": OrderedDict,
 }  # fmt: skip
 GENERATOR = "numpy.Generator"
+DEEPEST = 100
+"""Largest number of objects around an object; the reader needs several of Python's frames for each."""
 KINDS = {own: kind for kind, own in CONTAINERS.items()}
 KEPT = (
     Enum, Space, EnvSpec, type, ModuleType, FunctionType, BuiltinFunctionType, MethodType, range, slice,
@@ -41,11 +43,7 @@ def encode(env: object) -> bytes:
     Raises:
         UnknownStateError: a part of the state cannot be stored.
     """
-    try:
-        written = json.dumps(_Writer().write(env, "env"))
-    except RecursionError:
-        raise UnknownStateError("the state is nested too deeply to be saved") from None
-    return zlib.compress(written.encode(), level=1)
+    return zlib.compress(json.dumps(_Writer().write(env, "env")).encode(), level=1)
 
 
 def decode(env: object, state: bytes) -> None:
@@ -61,6 +59,7 @@ class _Writer:
     def __init__(self) -> None:
         self._seen: dict[int, int] = {}
         self._alive: list[object] = []
+        self._depth = 0
 
     def write(self, value: Any, place: str) -> Any:
         """Return a value in JSON's types: a plain value unchanged, any other as [kind, ...]."""
@@ -72,7 +71,12 @@ class _Writer:
             return ["same", self._seen[id(value)]]
         self._seen[id(value)] = len(self._seen)
         self._alive.append(value)  # keeps the object alive, so that no other object gets its id
-        return self._written(value, place)
+        self._depth += 1
+        if self._depth > DEEPEST:
+            raise UnknownStateError("the state is nested too deeply to be saved")
+        written = self._written(value, place)
+        self._depth -= 1
+        return written
 
     def _written(self, value: Any, place: str) -> Any:
         if isinstance(value, np.generic):

@@ -23,6 +23,7 @@ from primordia.runs.records import Records, on_its_device
 from primordia.settings.fields import setting_fields
 from primordia.settings.islands import KEY
 from primordia.settings.tables import NONE, did_you_mean, merged, replaced
+from primordia.settings.values import plain
 
 GAMES = 30
 TICKS = 100_000
@@ -204,15 +205,16 @@ def changed(config: Config, changes: Mapping[str, Any]) -> Config:
     Raises:
         InputError: the habitat has no such setting, or brains do not fit the changed habitat.
     """
+    given: dict[str, Any] = plain(dict(changes))
     before = config.build_habitat()
     known = list(setting_fields(type(before)))
     for name in changes:
         if known and name not in {each.partition(".")[0] for each in known}:
             hint = did_you_mean(name, known)
             raise InputError(f"this run's habitat has no setting {name!r}{hint}")
-    values = merged(config.habitat, dict(changes))
+    values = merged(config.habitat, given)
     if (islands := values.get(KEY)) and KEY not in changes:
-        values[KEY] = [_island_changed(each, changes) for each in islands]
+        values[KEY] = [_island_changed(each, given) for each in islands]
     values = replaced(values, NONE, None)
     after = config.model_copy(update={"habitat": values})
     habitat = after.build_habitat()
